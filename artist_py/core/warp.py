@@ -1,0 +1,60 @@
+"""Maps of the unit square to directions and shapes, with their densities."""
+
+import math
+
+from ..jit import function
+from .vector import vec3
+
+INV_PI = 1.0 / math.pi
+
+
+@function
+def square_to_disk(u, v):
+    """Point (x, y) of the unit disk, uniform; concentric map of Shirley and Chiu 1997."""
+    a = 2.0 * u - 1.0
+    b = 2.0 * v - 1.0
+    if a == 0.0 and b == 0.0:
+        return 0.0, 0.0
+    if abs(a) > abs(b):
+        radius, angle = a, 0.25 * math.pi * (b / a)
+    else:
+        radius, angle = b, 0.5 * math.pi - 0.25 * math.pi * (a / b)
+    return radius * math.cos(angle), radius * math.sin(angle)
+
+
+@function
+def square_to_cosine_hemisphere(u, v):
+    """Local direction with density cos / pi per solid angle (Malley's method)."""
+    x, y = square_to_disk(u, v)
+    return vec3(x, y, math.sqrt(max(0.0, 1.0 - x * x - y * y)))
+
+
+@function
+def square_to_sphere(u, v):
+    """Unit direction, uniform: density 1 / (4 pi) per solid angle."""
+    z = 1.0 - 2.0 * u
+    radius = math.sqrt(max(0.0, 1.0 - z * z))
+    angle = 2.0 * math.pi * v
+    return vec3(radius * math.cos(angle), radius * math.sin(angle), z)
+
+
+@function
+def square_to_triangle(u, v):
+    """Barycentric weights (b1, b2) of a uniform point; the fold of Heitz 2019 keeps nearby points near."""
+    if v > u:
+        b1 = 0.5 * u
+        return b1, v - b1
+    b2 = 0.5 * v
+    return u - b2, b2
+
+
+@function
+def square_to_cone(u, v, one_minus_cos_max):
+    """Local direction within the cone around z, uniform: density 1 / (2 pi (1 - cos_max)).
+
+    Taking 1 - cos keeps narrow cones exact where the cosine itself would round to 1.
+    """
+    one_minus_cos = u * one_minus_cos_max
+    sin_theta = math.sqrt(max(0.0, one_minus_cos * (2.0 - one_minus_cos)))
+    angle = 2.0 * math.pi * v
+    return vec3(sin_theta * math.cos(angle), sin_theta * math.sin(angle), 1.0 - one_minus_cos)

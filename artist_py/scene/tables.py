@@ -1,0 +1,179 @@
+"""The contract between the scene compiler and the kernels: what a compiled scene looks like in memory.
+
+Kernels work in *render space*: the scene moved to the origin and scaled by a power of two so that its bounding radius
+lies in [1, 2); float32 geometry is then as precise for a scene far from the origin as for one at it.
+A field that is `None` is absent from the scene and its code is not compiled.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+# Placement kinds: how a hit's position and normal are found from Embree's primitive.
+TRIANGLES, SMOOTH_TRIANGLES, PARALLELOGRAMS, QUADRICS = range(4)
+
+# Quadric kinds, each in its canonical frame (see geometry/quadrics.py).
+SPHERE, DISK, CYLINDER, CONE = range(4)
+
+# BSDF kinds.
+DIFFUSE, OREN_NAYAR, MIRROR, CONDUCTOR, DIELECTRIC, THIN_DIELECTRIC, PASS_THROUGH = range(7)
+
+# Emitter kinds: how a point on the emitter is sampled.
+TRIANGLE_EMITTER, PARALLELOGRAM_EMITTER, SPHERE_EMITTER, QUADRIC_EMITTER = range(4)
+
+NO_EMITTER = -1
+
+vertex_dtype = np.dtype([("position", "f4", 3), ("normal", "f4", 3), ("uv", "f4", 2)])
+
+quadric_dtype = np.dtype(
+    [
+        ("object_to_world", "f8", (3, 4)),  # canonical frame to render space (or to the instanced object's frame)
+        ("world_to_object", "f8", (3, 4)),
+        ("kind", "i8"),
+    ]
+)
+
+# One row per (instance, shape): instance 0 holds the shapes that stand directly in the scene.
+placement_dtype = np.dtype(
+    [
+        ("kind", "i4"),
+        ("material", "i4"),
+        ("emitter", "i4"),  # index of the emitter of primitive 0, or NO_EMITTER
+        ("first", "i4"),  # index of primitive 0 in its pool (triangles, parallelograms or quadrics)
+        ("instance", "i4"),  # row in `Geometry.instances`, 0 for none
+        ("flip", "f4"),  # -1 turns the normals round
+    ]
+)
+
+instance_dtype = np.dtype(
+    [
+        ("object_to_world", "f8", (3, 4)),
+        ("world_to_object", "f8", (3, 4)),
+        ("first_placement", "i4"),
+    ],
+    align=True,
+)
+
+material_dtype = np.dtype(
+    [
+        ("kind", "i4"),
+        ("two_sided", "i4"),  # 1: the back scatters like the front; 0: it is black
+        ("reflectance", "i4"),  # row of the spectra, [0, 1]
+        ("eta", "i4"),  # row: conductor's real index of refraction, or the dispersive dielectric's
+        ("absorption", "i4"),  # row: conductor's imaginary index of refraction
+        ("is_dispersive", "i4"),
+        ("priority", "i4"),  # of overlapping dielectrics the one of highest priority fills the space
+        ("texture", "i4"),  # row of the textures that replaces `reflectance`, or -1
+        ("ior", "f8"),  # dielectric's index of refraction where it does not depend on wavelength
+        ("roughness", "f8"),  # Oren-Nayar: standard deviation of facet slopes' angle, radians
+    ]
+)
+
+emitter_dtype = np.dtype(
+    [
+        ("kind", "i4"),
+        ("spectrum", "i4"),  # row of the spectra, W m^-2 sr^-1 nm^-1 once scaled
+        ("two_sided", "i4"),
+        ("quadric", "i4"),
+        ("scale", "f8"),
+        ("pdf_select", "f8"),  # probability of choosing this emitter, discrete
+        ("area", "f8"),  # render-space units squared
+        ("origin", "f8", 3),  # triangle and parallelogram: a corner; sphere: its centre
+        ("edge0", "f8", 3),  # sphere: edge0[0] is the radius
+        ("edge1", "f8", 3),
+        ("normal", "f8", 3),  # of the emitting side (after `flip`)
+    ]
+)
+
+alias_dtype = np.dtype([("probability", "f8"), ("alias", "i8")])
+
+
+class Geometry(NamedTuple):
+    """Where things are; `embree` is the address of the committed RTCScene."""
+
+    embree: int
+    placements: np.ndarray  # placement_dtype
+    vertices: np.ndarray  # vertex_dtype, shared with Embree
+    triangles: np.ndarray  # uint32 (n, 3) into vertices, shared with Embree
+    parallelograms: np.ndarray  # uint32 (n, 4) into vertices, corner, +edge0, +edge0+edge1, +edge1
+    quadrics: np.ndarray | None  # quadric_dtype
+    instances: np.ndarray | None  # instance_dtype
+
+
+class Spectra(NamedTuple):
+    """All spectra of the scene, one row each; exactly one of `resolved` and `dense` is present."""
+
+    resolved: np.ndarray | None  # float32 (rows, C): at this iteration's shared wavelengths
+    dense: np.ndarray | None  # float32 (rows, bins): averages over 1 nm bins
+    first: float  # nm, lower edge of bin 0
+
+
+class Emitters(NamedTuple):
+    """What emits; `alias` is absent when there is one emitter only."""
+
+    records: np.ndarray  # emitter_dtype
+    alias: np.ndarray | None  # alias_dtype
+
+
+class Needs(NamedTuple):
+    """What the scene needs: `True`, or `None` for what is left out of its kernels."""
+
+    diffuse: bool | None = None
+    oren_nayar: bool | None = None
+    mirror: bool | None = None
+    conductor: bool | None = None
+    dielectric: bool | None = None
+    thin_dielectric: bool | None = None
+    pass_through: bool | None = None
+    dispersion: bool | None = None  # a dielectric whose index depends on wavelength
+    media: bool | None = None  # dielectrics inside or overlapping dielectrics
+    triangles: bool | None = None
+    smooth_triangles: bool | None = None
+    parallelograms: bool | None = None
+    quadrics: bool | None = None
+    instances: bool | None = None
+    triangle_emitters: bool | None = None
+    parallelogram_emitters: bool | None = None
+    sphere_emitters: bool | None = None
+    quadric_emitters: bool | None = None
+    one_sided: bool | None = None  # a material that is black from behind
+    textures: bool | None = None
+    shared_wavelengths: bool | None = None
+
+
+class Lens(NamedTuple):
+    """A thin lens; `blades` = 0 is a round aperture."""
+
+    radius: float  # render-space units
+    focus_distance: float  # along the optical axis
+    blades: int
+    rotation: float  # radians
+
+
+class Filter(NamedTuple):
+    """Reconstruction filter as one inverse distribution per axis; see film/filters.py."""
+
+    offsets: np.ndarray  # float64 (n + 1,), pixels from the pixel centre
+    weights: np.ndarray | None  # float64 (n,); absent where the filter is its own density
+
+
+class Camera(NamedTuple):
+    """A perspective camera in render space: direction of film point (x, y) = forward + x right + y up (down the image)."""
+
+    position: object  # Vec3
+    forward: object  # Vec3, unit
+    right: object  # Vec3, per pixel
+    down: object  # Vec3, per pixel
+    corner: object  # Vec3: direction through the corner of pixel (0, 0), length 1 along `forward`
+    lens: Lens | None
+
+
+class Scene(NamedTuple):
+    """Everything a kernel may read."""
+
+    geometry: Geometry
+    materials: np.ndarray  # material_dtype
+    spectra: Spectra
+    emitters: Emitters | None
+    textures: object | None
+    needs: Needs

@@ -1,0 +1,111 @@
+"""Where in which file something stands: cheap to keep, and turned into a line only when a problem is reported."""
+
+import re
+from bisect import bisect_right
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from artist_py.errors import Problem
+
+
+@dataclass(eq=False)
+class Source:
+    """One scene file: its name as shown to the user, its text, its parsed table, and what was set from outside."""
+
+    file: str
+    text: str
+    table: dict
+    overridden: set = field(default_factory=set)  # key paths given by --set, tuples
+
+    def line(self, keys):
+        """Line (1-based) of the deepest part of the path `keys` that the text has, or None."""
+        position = None
+        node = self._spanned
+        for depth, key in enumerate(keys):
+            inner = node.inner() if node is not None else None
+            if isinstance(inner, dict) and key in inner:
+                position = next(k for k in inner if k.inner() == key).span().start
+                node = inner[key]
+            elif isinstance(inner, list) and isinstance(key, int) and key < len(inner):
+                node = inner[key]
+                element = node.span()
+                position = element.start if element.stop else self._header(keys[:depth], key, position)
+            else:
+                break
+        return None if position is None else bisect_right(self._line_starts, position)
+
+    def _header(self, keys, index, default):
+        """Position of the header of element `index` of the array of tables `keys`, which the parser does not keep."""
+        name = r"[ \t]*\.[ \t]*".join(rf"[\"']?{re.escape(str(key))}[\"']?" for key in keys)
+        headers = re.finditer(rf"^[ \t]*(\[\[)[ \t]*{name}[ \t]*\]\]", self._text, re.MULTILINE)
+        return next((m.start(1) for i, m in enumerate(headers) if i == index), default)
+
+    @cached_property
+    def _text(self):
+        return self.text.replace("\r\n", "\n")
+
+    @cached_property
+    def _line_starts(self):
+        return [0, *(match.end() for match in re.finditer("\n", self._text))]
+
+    @cached_property
+    def _spanned(self):
+        import spanned_toml
+
+        try:
+            return spanned_toml.loads(as_toml_1_0(self._text))
+        except (ValueError, RecursionError):  # an escape of TOML 1.1: the problem is then told without its line
+            return None
+
+
+@dataclass(frozen=True, slots=True)
+class Where:
+    """A place in a scene file: the source and the path of keys and indices to the value."""
+
+    source: Source
+    keys: tuple = ()
+
+    def at(self, *keys):
+        """The place `keys` further down."""
+        return Where(self.source, self.keys + keys)
+
+    def problem(self, message):
+        """A Problem at this place."""
+        key = ".".join(map(str, self.keys)) or None
+        for depth in range(len(self.keys) + 1):
+            if self.keys[:depth] in self.source.overridden:
+                return Problem(message, "--set", None, key)
+        return Problem(message, self.source.file, self.source.line(self.keys), key)
+
+
+def problem(node, key, message):
+    """A Problem with `key` (dotted, or None for the whole) of a node of the scene graph."""
+    keys = key.split(".") if key else ()
+    if node.where is None:  # made in Python, not read from a file
+        return Problem(message, key=key)
+    return node.where.at(*keys).problem(message)
+
+
+_TOKEN = re.compile(
+    r'"""(?:\\.|[^\\])*?"{3,5}|\'\'\'.*?\'{3,5}|"(?:\\.|[^"\\\n])*"|\'[^\'\n]*\'|#[^\n]*|[{}\n,]|[^\s{},"\'#]+',
+    re.DOTALL,
+)
+
+
+def as_toml_1_0(text):
+    """The same text, character by character, with what TOML 1.1 allows inside { } blanked: line ends, comments
+    and a comma at the end. `spanned_toml` knows TOML 1.0 only."""
+    pieces, end, depth, comma = [], 0, 0, None
+    for match in _TOKEN.finditer(text):
+        token = match.group()
+        pieces.append(text[end : match.start()])
+        end = match.end()
+        depth += (token == "{") - (token == "}")
+        if depth > 0 and token[0] in "#\n":
+            token = " " * len(token)
+        elif token == "}" and comma is not None:
+            pieces[comma] = " "
+        if token.strip():
+            comma = len(pieces) if token == "," else None
+        pieces.append(token)
+    return "".join([*pieces, text[end:]])

@@ -1,8 +1,9 @@
-"""Where in which file something stands: cheap to keep, and turned into a line only when a problem is reported."""
+"""Where in which file something stands: cheap to keep, turned into a line only when a problem is reported."""
 
+import os
 import re
 from bisect import bisect_right
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from artist_py.errors import Problem
@@ -10,12 +11,14 @@ from artist_py.errors import Problem
 
 @dataclass(eq=False)
 class Source:
-    """One scene file: its name as shown to the user, its text, its parsed table, and what was set from outside."""
+    """One scene file: its name as shown to the user, its text, its parsed table."""
 
     file: str
     text: str
     table: dict
-    overridden: set = field(default_factory=set)  # key paths given by --set, tuples
+    names: dict = field(default_factory=dict)  # {section: what may be referred to}, of all files of the scene
+    overridden: set = field(default_factory=set)  # paths of keys given by --set
+    _headers: dict = field(default_factory=dict)  # {path of an array of tables: positions of its headers}
 
     def line(self, keys):
         """Line (1-based) of the deepest part of the path `keys` that the text has, or None."""
@@ -29,16 +32,19 @@ class Source:
             elif isinstance(inner, list) and isinstance(key, int) and key < len(inner):
                 node = inner[key]
                 element = node.span()
-                position = element.start if element.stop else self._header(keys[:depth], key, position)
+                position = element.start if element.stop else self._header(tuple(keys[:depth]), key, position)
             else:
                 break
         return None if position is None else bisect_right(self._line_starts, position)
 
     def _header(self, keys, index, default):
-        """Position of the header of element `index` of the array of tables `keys`, which the parser does not keep."""
-        name = r"[ \t]*\.[ \t]*".join(rf"[\"']?{re.escape(str(key))}[\"']?" for key in keys)
-        headers = re.finditer(rf"^[ \t]*(\[\[)[ \t]*{name}[ \t]*\]\]", self._text, re.MULTILINE)
-        return next((m.start(1) for i, m in enumerate(headers) if i == index), default)
+        """Position of the header of element `index` of the array of tables `keys`; the parser keeps none."""
+        if keys not in self._headers:
+            name = r"[ \t]*\.[ \t]*".join(rf"[\"']?{re.escape(str(key))}[\"']?" for key in keys)
+            matches = re.finditer(rf"^[ \t]*(\[\[)[ \t]*{name}[ \t]*\]\]", self._text, re.MULTILINE)
+            self._headers[keys] = [match.start(1) for match in matches]
+        found = self._headers[keys]
+        return found[index] if index < len(found) else default
 
     @cached_property
     def _text(self):
@@ -54,7 +60,7 @@ class Source:
 
         try:
             return spanned_toml.loads(as_toml_1_0(self._text))
-        except (ValueError, RecursionError):  # an escape of TOML 1.1: the problem is then told without its line
+        except (ValueError, RecursionError):  # an escape of TOML 1.1: problems are then told without a line
             return None
 
 
@@ -69,12 +75,25 @@ class Where:
         """The place `keys` further down."""
         return Where(self.source, self.keys + keys)
 
+    @property
+    def is_overridden(self):
+        """Whether the value here was given by --set."""
+        return any(self.keys[:depth] in self.source.overridden for depth in range(1, len(self.keys) + 1))
+
+    @property
+    def folder(self):
+        """The folder that paths written here are relative to: the file's, or for --set the current one."""
+        return "" if self.is_overridden else os.path.dirname(self.source.file)
+
+    def place(self):
+        """File and line, as a message names them."""
+        return str(replace(self.problem(""), key=None))
+
     def problem(self, message):
         """A Problem at this place."""
         key = ".".join(map(str, self.keys)) or None
-        for depth in range(len(self.keys) + 1):
-            if self.keys[:depth] in self.source.overridden:
-                return Problem(message, "--set", None, key)
+        if self.is_overridden:
+            return Problem(message, "--set", None, key)
         return Problem(message, self.source.file, self.source.line(self.keys), key)
 
 
@@ -93,8 +112,10 @@ _TOKEN = re.compile(
 
 
 def as_toml_1_0(text):
-    """The same text, character by character, with what TOML 1.1 allows inside { } blanked: line ends, comments
-    and a comma at the end. `spanned_toml` knows TOML 1.0 only."""
+    """The text with spaces for what TOML 1.1 allows inside { }: line ends, comments and a comma at the end.
+
+    `spanned_toml` knows TOML 1.0 only; all positions stay.
+    """
     pieces, end, depth, comma = [], 0, 0, None
     for match in _TOKEN.finditer(text):
         token = match.group()

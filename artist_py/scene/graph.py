@@ -1,0 +1,263 @@
+"""What a scene file may say: one frozen dataclass per table, one field per key, its default and its unit.
+
+Lengths are in scene units, angles in degrees, wavelengths in nm, radiance in W m^-2 sr^-1 nm^-1. A key
+without a default must be given. The converters (`fields.py`) say what a value may be, `problems` what keys
+may not say together. Shapes are in `shape_types.py`, spectra in `spectrum_types.py`, transforms in
+`transforms.py`.
+"""
+
+import math
+
+from artist_py.scene.fields import (
+    Array,
+    Choice,
+    Dictionary,
+    FilePath,
+    Flag,
+    Node,
+    Number,
+    Reference,
+    Table,
+    Text,
+    Variant,
+    key,
+    numbers,
+)
+from artist_py.scene.messages import expected
+from artist_py.scene.shape_types import SHAPES, Shape, Vector, distance, node, shape, transform
+from artist_py.scene.spectrum_fields import IndexField, SpectrumField
+from artist_py.scene.spectrum_types import Constant, RefractiveIndex, Spectrum
+from artist_py.scene.transforms import are_parallel, direction, normalized, point
+
+FILTER_RADIUS = {"box": 0.5, "tent": 1.0, "gaussian": 1.5, "blackman-harris": 1.5, "mitchell": 2.0}  # pixels
+INTEGRATORS = ("pt",)
+WHITE_LUMINANCE = 72983.25  # cd/m2 of a flat spectrum of radiance 1: 683.002 lm/W times the integral of ybar
+
+_count = Number(at_least=1, whole=True)
+_unit_range = SpectrumField(Number(at_least=0, at_most=1))
+_radiance = SpectrumField(Number(at_least=0))
+_positive_spectrum = SpectrumField(Number(above=0))
+
+
+@node
+class Film(Node):
+    """[film]: the image."""
+
+    resolution: tuple[int, int] = key(
+        numbers(2, "[width, height]", Number(at_least=1, at_most=65536, whole=True)), (512, 512)
+    )  # pixels
+    crop: tuple[int, int, int, int] | None = key(
+        numbers(4, "[x0, x1, y0, y1]", Number(at_least=0, whole=True)), None
+    )  # pixels; x1 and y1 are the first ones left out; default: the whole image
+    filter: str = key(Choice(tuple(FILTER_RADIUS)), "blackman-harris")
+    filter_radius: float = key(Number(above=0, at_most=32), None)  # pixels; default: as FILTER_RADIUS
+    white_luminance: float = key(Number(above=0), WHITE_LUMINANCE)  # cd/m2 that become Y = 1
+    observer: str = key(Choice(("CIE 1931 2", "CIE 1964 10")), "CIE 1931 2")
+
+    def __post_init__(self):
+        if self.filter_radius is None:
+            object.__setattr__(self, "filter_radius", FILTER_RADIUS[self.filter])
+
+    def problems(self):
+        if self.crop is not None:
+            (x0, x1, y0, y1), (width, height) = self.crop, self.resolution
+            if not (x0 < x1 <= width and y0 < y1 <= height):
+                yield "crop", expected(f"0 <= x0 < x1 <= {width} and 0 <= y0 < y1 <= {height}", self.crop)
+
+
+@node
+class Pinhole(Node):
+    """[camera] type = "pinhole": everything is sharp."""
+
+    position: Vector = key(point)
+    look_at: Vector = key(point)  # the point in the middle of the image
+    up: Vector = key(direction, (0.0, 0.0, 1.0))
+    field_of_view: float = key(Number(above=0, below=180), 45.0)  # degrees, across the shorter side
+
+    def view(self):
+        """From the position to what is looked at, not normalised."""
+        return tuple(b - a for a, b in zip(self.position, self.look_at, strict=True))
+
+    def problems(self):
+        if normalized(self.view()) is None:
+            yield "look_at", expected("another point than position", self.look_at)
+        elif are_parallel(self.view(), self.up):
+            yield "up", expected("a direction not parallel to the view", self.up)
+
+
+@node
+class ThinLens(Pinhole):
+    """[camera] type = "thin-lens": sharp in one plane."""
+
+    aperture_radius: float = key(distance)  # scene units
+    focus_distance: float = key(distance, None)  # scene units, along the view; default: to look_at
+    blades: int = key(Number(at_least=0, at_most=64, whole=True), 0)  # corners of the aperture; 0: round
+    blade_rotation: float = key(Number(), 0.0)  # degrees
+
+    def __post_init__(self):
+        if self.focus_distance is None:
+            object.__setattr__(self, "focus_distance", math.hypot(*self.view()))
+
+    def problems(self):
+        yield from super().problems()
+        if self.blades in (1, 2):
+            yield "blades", expected("0 for a round aperture, or blades >= 3", self.blades)
+
+
+CAMERAS = {"pinhole": Pinhole, "thin-lens": ThinLens}
+
+
+@node
+class Merging(Node):
+    """[render.merging]: photons."""
+
+    radius: float = key(Number(above=0), 0.003)  # of the first iteration, in bounding radii of the scene
+    radius_pixels: float | None = key(Number(above=0), None)  # instead: pixels at the vertex
+    alpha: float = key(Number(above=0, at_most=1), 0.75)  # how the radius shrinks; 1: it does not
+    light_paths: float = key(Number(above=0), 1.0)  # per pixel
+
+    def problems(self):
+        if self.radius_pixels is not None and self.radius != 0.003:
+            yield "radius_pixels", "expected either radius or radius_pixels, found both"
+
+
+@node
+class Render(Node):
+    """[render]: how the image is computed."""
+
+    integrator: str = key(Choice(INTEGRATORS), "pt")
+    iterations: int = key(_count, 64)  # one path per pixel each
+    time: float | None = key(Number(above=0), None)  # seconds after which no iteration starts
+    error: float | None = key(Number(above=0), None)  # relMSE at which it is good enough
+    max_path_length: int = key(_count, 12)  # edges
+    roulette_length: int = key(Number(at_least=0, whole=True), 4)  # edges before Russian roulette
+    seed: int = key(Number(at_least=0, whole=True, limit=2**63 - 1), 1)
+    wavelengths: str = key(Choice(("independent", "shared")), "independent")
+    hero_count: int = key(Choice((1, 4, 8)), 4)  # wavelengths per path
+    wavelength_range: tuple[int, int] | None = key(
+        numbers(2, "[first, last]", Number(at_least=300, at_most=830, whole=True)), None
+    )  # nm; default: 380 to 780, or from 300 where the scene needs it
+    sampler: str = key(Choice(("sobol", "independent")), "sobol")
+    merging: Merging = key(Table(Merging), Merging())
+
+    def problems(self):
+        if self.wavelength_range is not None and self.wavelength_range[0] >= self.wavelength_range[1]:
+            yield "wavelength_range", expected("first < last", self.wavelength_range)
+
+
+@node
+class Material(Node):
+    """What every material that reflects can say."""
+
+    two_sided: bool = key(Flag(), True)  # false: the back is black
+
+
+@node
+class Diffuse(Material):
+    """type = "diffuse": Lambert."""
+
+    reflectance: Spectrum = key(_unit_range, Constant(0.5))
+
+
+@node
+class OrenNayar(Material):
+    """type = "oren-nayar": rough matte."""
+
+    reflectance: Spectrum = key(_unit_range, Constant(0.5))
+    roughness: float = key(Number(at_least=0, at_most=90), 20.0)  # degrees, sigma of the facets' slopes
+
+
+@node
+class Mirror(Material):
+    """type = "mirror": reflects the same share at every angle."""
+
+    reflectance: Spectrum = key(_unit_range, Constant(1.0))
+
+
+@node
+class Conductor(Material):
+    """type = "conductor": smooth metal, by name or by its complex refractive index eta + i k."""
+
+    metal: str | None = key(Text(), None)
+    eta: Spectrum | None = key(_positive_spectrum, None)
+    k: Spectrum | None = key(_radiance, None)
+    reflectance: Spectrum = key(_unit_range, Constant(1.0))  # multiplies
+
+    def problems(self):
+        if self.metal is None and self.eta is None and self.k is None:
+            yield "metal", "missing, expected a metal, or eta and k"
+        elif self.metal is not None and (self.eta is not None or self.k is not None):
+            yield "metal", "expected either metal or eta and k, found both"
+        elif self.metal is None and self.k is None:
+            yield "k", "missing, expected a spectrum, since there is eta"
+        elif self.metal is None and self.eta is None:
+            yield "eta", "missing, expected a spectrum, since there is k"
+
+
+@node
+class Dielectric(Node):
+    """type = "dielectric": smooth glass, water."""
+
+    ior: RefractiveIndex = key(IndexField(), Constant(1.5))
+    priority: int = key(Number(whole=True), 0)  # the highest wins
+
+
+@node
+class ThinDielectric(Node):
+    """type = "thin-dielectric": a pane without thickness."""
+
+    ior: RefractiveIndex = key(IndexField(), Constant(1.5))
+
+
+@node
+class PassThrough(Node):
+    """type = "none": light goes through as if nothing were there."""
+
+
+MATERIALS = {
+    "diffuse": Diffuse,
+    "oren-nayar": OrenNayar,
+    "mirror": Mirror,
+    "conductor": Conductor,
+    "dielectric": Dielectric,
+    "thin-dielectric": ThinDielectric,
+    "none": PassThrough,
+}
+TYPE_NAMES = {cls: name for classes in (CAMERAS, MATERIALS, SHAPES) for name, cls in classes.items()}
+
+
+@node
+class Object(Node):
+    """[objects.NAME]: shapes to be placed any number of times."""
+
+    shapes: tuple[Shape, ...] = key(Array(shape, at_least=1, expected="one shape or more"))
+
+
+@node
+class Instance(Node):
+    """[[instances]]: an object, placed."""
+
+    object: str = key(Reference("objects"))
+    name: str | None = key(Text(), None)
+    transform: tuple = key(transform, ())
+    material: str | None = key(Reference("materials"), None)  # instead of those of the object's shapes
+
+
+@node
+class Scene(Node):
+    """A scene file, or a whole scene: the file together with all that it includes."""
+
+    include: tuple[str, ...] = key(Array(FilePath(), expected="paths of scene files"), ())
+    film: Film = key(Table(Film), Film())
+    camera: Pinhole | ThinLens | None = key(Variant(CAMERAS), None)
+    render: Render = key(Table(Render), Render())
+    spectra: dict[str, Spectrum] = key(Dictionary(SpectrumField()), None)
+    materials: dict[str, Node] = key(Dictionary(Variant(MATERIALS)), None)
+    objects: dict[str, Object] = key(Dictionary(Table(Object)), None)
+    shapes: tuple[Shape, ...] = key(Array(shape, expected="an array of tables"), ())
+    instances: tuple[Instance, ...] = key(Array(Table(Instance), expected="an array of tables"), ())
+
+    def __post_init__(self):
+        for name in ("spectra", "materials", "objects"):
+            if getattr(self, name) is None:
+                object.__setattr__(self, name, {})

@@ -5,7 +5,6 @@ problems it found; its `expected` says in words what it takes.
 """
 
 import math
-import os
 import sys
 from dataclasses import MISSING, dataclass, field, fields
 from functools import cache
@@ -30,6 +29,9 @@ class Node:
         return ()
 
 
+node = dataclass(frozen=True, kw_only=True)
+
+
 def key(convert, default=MISSING, *, name=None):
     """A dataclass field that is a key of the scene file; `name` where that differs from the field's."""
     return field(default=default, metadata={"convert": convert, "name": name})
@@ -41,9 +43,9 @@ def keys_of(cls):
     return {f.metadata["name"] or f.name: f for f in fields(cls) if "convert" in f.metadata}
 
 
-def fail(at, message):
-    """Raise SceneError with this one problem."""
-    raise SceneError([at.problem(message)])
+def failure(at, message):
+    """The SceneError of one problem."""
+    return SceneError([at.problem(message)])
 
 
 def convert_all(convert, items):
@@ -77,14 +79,14 @@ class Number:
     def __call__(self, value, at):
         kinds = int if self.whole else (int, float)
         if isinstance(value, bool) or not isinstance(value, kinds):
-            fail(at, expected(self.expected, value))
+            raise failure(at, expected(self.expected, value))
         if math.isnan(value) or math.isinf(value) or abs(value) > FLOAT_LIMIT:
-            fail(at, expected("a finite number", value))
+            raise failure(at, expected("a finite number", value))
         if not self.allows(value):
-            fail(at, expected(self.range(at), value))
+            raise failure(at, expected(self.range(at), value))
         limit = self.limit or (WHOLE_LIMIT if self.whole else FLOAT_LIMIT)
         if abs(value) > limit:
-            fail(at, expected(f"{self.expected} of size {show(limit)} at most", value))
+            raise failure(at, expected(f"{self.expected} of size {show(limit)} at most", value))
         return value if self.whole else float(value)
 
     def allows(self, number):
@@ -119,9 +121,9 @@ class Array:
 
     def __call__(self, value, at):
         if not isinstance(value, list | tuple):
-            fail(at, expected(self.expected, value))
+            raise failure(at, expected(self.expected, value))
         if len(value) < self.at_least or self.count not in (None, len(value)):
-            fail(at, expected(self.expected, value))
+            raise failure(at, expected(self.expected, value))
         return tuple(convert_all(self.element, ((v, at.at(i)) for i, v in enumerate(value))))
 
 
@@ -138,7 +140,7 @@ class Flag:
 
     def __call__(self, value, at):
         if not isinstance(value, bool):
-            fail(at, expected(self.expected, value))
+            raise failure(at, expected(self.expected, value))
         return value
 
 
@@ -150,9 +152,9 @@ class Text:
 
     def __call__(self, value, at):
         if not isinstance(value, str):
-            fail(at, expected(self.expected, value))
+            raise failure(at, expected(self.expected, value))
         if not value:
-            fail(at, "expected a string that is not empty")
+            raise failure(at, "expected a string that is not empty")
         return value
 
 
@@ -164,8 +166,8 @@ class FilePath:
 
     def __call__(self, value, at):
         if not isinstance(value, str) or not value or "\0" in value:
-            fail(at, expected(self.expected, value))
-        return os.path.normpath(os.path.join(at.folder, value))
+            raise failure(at, expected(self.expected, value))
+        return str(at.folder / value)
 
 
 @dataclass(frozen=True)
@@ -182,7 +184,7 @@ class Choice:
         if isinstance(value, str | int) and not isinstance(value, bool) and value in self.options:
             return value
         near = nearest(value, self.options, otherwise=False) if isinstance(value, str) else ""
-        fail(at, expected(self.expected, value) + near)
+        raise failure(at, expected(self.expected, value) + near)
 
 
 @dataclass(frozen=True)
@@ -199,7 +201,7 @@ class Reference:
         name = Text()(value, at)
         known = at.source.names.get(self.section, {})
         if name not in known and not at.source.names.get("incomplete"):
-            fail(at, f"unknown {self.section.removesuffix('s')} {show(name)}{nearest(name, known)}")
+            raise failure(at, f"unknown {self.section.removesuffix('s')} {show(name)}{nearest(name, known)}")
         return name
 
 
@@ -212,9 +214,9 @@ class Dictionary:
 
     def __call__(self, value, at):
         if not isinstance(value, dict):
-            fail(at, expected(self.expected, value))
+            raise failure(at, expected(self.expected, value))
         if "" in value:
-            fail(at.at(""), "expected a name that is not empty")
+            raise failure(at.at(""), "expected a name that is not empty")
         elements = convert_all(self.element, ((v, at.at(name)) for name, v in value.items()))
         return dict(zip(value, elements, strict=True))
 
@@ -228,7 +230,7 @@ class Table:
 
     def __call__(self, value, at, known_apart=()):
         if not isinstance(value, dict):
-            fail(at, expected(self.expected, value))
+            raise failure(at, expected(self.expected, value))
         values, problems = {}, self._missing(value, at)
         known = keys_of(self.cls)
         for name, item in value.items():
@@ -236,7 +238,7 @@ class Table:
                 if name in known:
                     values[known[name].name] = known[name].metadata["convert"](item, at.at(name))
                 elif name not in known_apart:
-                    fail(at.at(name), unknown_key(name, [*known, *known_apart], value))
+                    raise failure(at.at(name), unknown_key(name, [*known, *known_apart], value))
             except SceneError as error:
                 problems += error.problems
         if not problems:
@@ -270,9 +272,9 @@ class Variant:
 
     def __call__(self, value, at):
         if not isinstance(value, dict):
-            fail(at, expected(self.expected, value))
+            raise failure(at, expected(self.expected, value))
         if "type" not in value:
-            fail(at.at("type"), f"missing, expected {listing(self.classes)}")
+            raise failure(at.at("type"), f"missing, expected {listing(self.classes)}")
         kind = Choice(tuple(self.classes))(value["type"], at.at("type"))
         return Table(self.classes[kind])(value, at, known_apart=("type",))
 
@@ -288,9 +290,9 @@ class Forms:
         given = [name for name in self.classes if name in value] if isinstance(value, dict) else []
         if not given and isinstance(value, dict) and value:
             name = next(iter(value))
-            fail(at.at(name), unknown_key(name, list(self.classes), value))
+            raise failure(at.at(name), unknown_key(name, list(self.classes), value))
         if not given:
-            fail(at, expected(self.expected, value))
+            raise failure(at, expected(self.expected, value))
         if len(given) > 1:
-            fail(at, f"expected one of {listing(given)}, found both")
+            raise failure(at, f"expected one of {listing(given)}, found both")
         return Table(self.classes[given[0]])(value, at)

@@ -21,11 +21,12 @@ from artist_py.scene.fields import (
     Text,
     Variant,
     key,
+    node,
     numbers,
 )
 from artist_py.scene.messages import expected
-from artist_py.scene.shape_types import SHAPES, Shape, Vector, distance, node, shape, transform
-from artist_py.scene.spectrum_fields import IndexField, SpectrumField
+from artist_py.scene.shape_types import SHAPES, Shape, Vector, distance, shape, transform
+from artist_py.scene.spectrum_fields import IndexField, MetalField, SpectrumField
 from artist_py.scene.spectrum_types import Constant, RefractiveIndex, Spectrum
 from artist_py.scene.transforms import are_parallel, direction, normalized, point
 
@@ -178,7 +179,7 @@ class Mirror(Material):
 class Conductor(Material):
     """type = "conductor": smooth metal, by name or by its complex refractive index eta + i k."""
 
-    metal: str | None = key(Text(), None)
+    metal: str | None = key(MetalField(), None)
     eta: Spectrum | None = key(_positive_spectrum, None)
     k: Spectrum | None = key(_radiance, None)
     reflectance: Spectrum = key(_unit_range, Constant(1.0))  # multiplies

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from pathlib import Path
 
 from artist_py.errors import SceneError
 from artist_py.scene.fields import FilePath, Node, keys_of
@@ -12,7 +13,7 @@ from artist_py.scene.where import problem
 
 
 def settings(scene: Scene):
-    """Film, camera and render with every default filled in, as for JSON; null is "automatic" or "no limit"."""
+    """Film, camera and render with all defaults filled in, as for JSON; null is "automatic" or "no limit"."""
     sections = ("film", "camera", "render")
     return {section: _plain(getattr(scene, section), lambda *place: place[-1]) for section in sections}
 
@@ -33,7 +34,7 @@ def scene_hash(scene: Scene):
 
 def _digest(node, key, path):
     try:
-        with open(path, "rb") as stream:
+        with Path(path).open("rb") as stream:
             return hashlib.file_digest(stream, "sha256").hexdigest()
     except (OSError, ValueError) as error:
         raise SceneError([problem(node, key, f"{path}: {reason(error)}")]) from None

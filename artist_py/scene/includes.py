@@ -1,6 +1,7 @@
 """The files of a scene: the one asked for and, once each, all it includes; parsed, not yet understood."""
 
 import os
+from pathlib import Path
 
 from artist_py.errors import Problem, SceneError
 from artist_py.scene.fields import FilePath
@@ -58,7 +59,7 @@ def _is_same(a, b):
     return os.path.realpath(a) == os.path.realpath(b)
 
 
-class NotUtf8(ValueError):
+class NotUtf8Error(ValueError):
     """A file that is not text; `line` is that of the first bad byte."""
 
     def __init__(self, error):
@@ -68,12 +69,11 @@ class NotUtf8(ValueError):
 
 def read_text(file):
     """The text of a file; raises OSError, or ValueError where it is not UTF-8."""
-    with open(file, "rb") as stream:
-        data = stream.read()
+    data = Path(file).read_bytes()
     try:
         return data.decode().removeprefix("\ufeff")
     except UnicodeDecodeError as error:
-        raise NotUtf8(error) from None
+        raise NotUtf8Error(error) from None
 
 
 def reason(error):

@@ -32,9 +32,10 @@ def listing(words):
 
 def nearest(word, known, *, otherwise=True):
     """The end of a message about an unknown word: the known one it is near, otherwise all that are known."""
-    match = get_close_matches(str(word)[:60], list(map(str, known)), n=1)
+    by_lower = {str(name).lower(): name for name in known}
+    match = get_close_matches(str(word)[:60].lower(), by_lower, n=1)
     if match:
-        return f", did you mean {show(match[0])}?"
+        return f", did you mean {show(by_lower[match[0]])}?"
     return f", expected {listing(known)}" if otherwise and known else ""
 
 

@@ -19,8 +19,8 @@ def apply_overrides(sources, overrides):
     return problems
 
 
-def _fail(dotted, message):
-    raise SceneError([Problem(message, "--set", None, dotted)])
+def _failure(keys, message):
+    return SceneError([Problem(message, "--set", None, ".".join(keys))])
 
 
 def parse_key(dotted):
@@ -33,9 +33,9 @@ def parse_key(dotted):
             [(key, node)] = node.items()
             keys.append(key)
     except (ValueError, AttributeError):
-        _fail(None, expected("a dotted key such as render.seed", dotted))
+        raise _failure([], expected("a dotted key such as render.seed", dotted)) from None
     if keys[0] == "include":
-        _fail("include", "cannot be set, since files are included first")
+        raise _failure(keys, "cannot be set, since files are included first")
     return keys
 
 
@@ -49,7 +49,7 @@ def parse_value(dotted, value):
         [(_, parsed)] = tomli.loads(f"value = {value}").items()
     except (ValueError, RecursionError):
         if not BARE_WORD.fullmatch(value):
-            _fail(dotted, expected("a value as in TOML", value))
+            raise _failure([dotted], expected("a value as in TOML", value)) from None
         return value
     return parsed
 
@@ -60,16 +60,17 @@ def _apply(sources, keys, value):
     container, path = source.table, []
     for depth, key in enumerate(keys):
         if isinstance(container, list):
-            key = first if depth == 1 and first is not None else _index(container, key, keys[:depth])
-        elif not isinstance(container, dict):
-            _fail(".".join(keys), f"{'.'.join(keys[:depth])} is {show(container)} and has no keys")
-        path.append(key)
+            path.append(first if depth == 1 and first is not None else _index(container, key, keys[:depth]))
+        elif isinstance(container, dict):
+            path.append(key)
+        else:
+            raise _failure(keys, f"{'.'.join(keys[:depth])} is {show(container)} and has no keys")
         if depth == len(keys) - 1:
-            container[key] = value
+            container[path[-1]] = value
         elif isinstance(container, dict):
             container = container.setdefault(key, {})
         else:
-            container = container[key]
+            container = container[path[-1]]
     source.overridden.add(tuple(path))
 
 
@@ -95,7 +96,6 @@ def _index(elements, key, parents):
     names = [element.get("name") if isinstance(element, dict) else None for element in elements]
     if key in names:
         return names.index(key)
-    dotted = ".".join([*parents, key])
     known = [name for name in names if isinstance(name, str)]
     count = f", {'.'.join(parents)} has {len(elements)}"
-    _fail(dotted, "no such element" + (nearest(key, known, otherwise=False) or count))
+    raise _failure([*parents, key], "no such element" + (nearest(key, known, otherwise=False) or count))

@@ -1,7 +1,5 @@
 """What a scene file may say of a shape: one frozen dataclass per type, one field per key; see `graph.py`."""
 
-from dataclasses import dataclass
-
 from artist_py.scene.fields import (
     Array,
     Choice,
@@ -14,6 +12,7 @@ from artist_py.scene.fields import (
     Text,
     Variant,
     key,
+    node,
     numbers,
 )
 from artist_py.scene.messages import expected
@@ -22,7 +21,6 @@ from artist_py.scene.spectrum_types import Spectrum
 from artist_py.scene.transforms import COORDINATE_LIMIT, are_parallel, direction, normalized, point, step
 
 Vector = tuple[float, float, float]
-node = dataclass(frozen=True, kw_only=True)
 
 distance = Number(above=0, limit=COORDINATE_LIMIT)
 transform = Array(step, expected="an array of steps")

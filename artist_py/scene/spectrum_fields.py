@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from artist_py.scene.fields import Forms, Number, fail
+from artist_py.scene.fields import Forms, Number, Text, failure
 from artist_py.scene.messages import expected, nearest, show
 from artist_py.scene.spectrum_types import (
     Blackbody,
@@ -19,6 +19,8 @@ from artist_py.scene.spectrum_types import (
 
 _SPECTRUM = "a spectrum: a number, a name or a table"
 _INDEX = "a refractive index: a number, a name or a table"
+NOT_NEGATIVE = Number(at_least=0)
+
 _sampled = {"wavelengths": Sampled, "file": File}
 _light = {"illuminant": Named, "blackbody": Blackbody, "gaussian": Gaussian, "lines": Lines}
 _spectrum_table = Forms({"rgb": Rgb, **_light, **_sampled}, _SPECTRUM)
@@ -32,7 +34,7 @@ class SpectrumField:
     What is known only after tabulation, such as the values in a file, is checked in `compile.py`.
     """
 
-    bounds: Number = Number(at_least=0)
+    bounds: Number = NOT_NEGATIVE
     expected = _SPECTRUM
 
     def __call__(self, value, at):
@@ -45,10 +47,10 @@ class SpectrumField:
         elif isinstance(value, int | float) and not isinstance(value, bool):
             spectrum = Constant(self.bounds(value, at), where=at)
         else:
-            fail(at, expected(self.expected, value))
+            raise failure(at, expected(self.expected, value))
         for number in _values(spectrum):
             if not self.bounds.allows(number * spectrum.scale):
-                fail(at, expected(self.bounds.range(at), number * spectrum.scale))
+                raise failure(at, expected(self.bounds.range(at), number * spectrum.scale))
         return spectrum
 
 
@@ -76,7 +78,7 @@ def _resolved(known, name, at):
     """The spectrum that [spectra] has under a name; `known` maps it to that, at first to (value, place)."""
     entry = known[name]
     if entry is None:
-        fail(at, f"{show(name)} is defined by itself")
+        raise failure(at, f"{show(name)} is defined by itself")
     if isinstance(entry, tuple):
         known[name] = None
         try:
@@ -95,7 +97,7 @@ def given_names():
 
 def _check_name(name, at, others=()):
     if name not in given_names() and not at.source.names.get("incomplete"):
-        fail(at, f"unknown spectrum {show(name)}{nearest(name, [*others, *given_names()])}")
+        raise failure(at, f"unknown spectrum {show(name)}{nearest(name, [*others, *given_names()])}")
 
 
 @dataclass(frozen=True)
@@ -106,7 +108,27 @@ class IndexField:
 
     def __call__(self, value, at):
         if isinstance(value, str):
-            return Named(value, where=at)
+            return Named(_optics_name("glass", value, at), where=at)
         if isinstance(value, int | float) and not isinstance(value, bool):
             return Constant(Number(above=0)(value, at), where=at)
         return _index_table(value, at)
+
+
+@dataclass(frozen=True)
+class MetalField:
+    """The name of a metal."""
+
+    expected = "the name of a metal"
+
+    def __call__(self, value, at):
+        return _optics_name("metal", Text()(value, at), at)
+
+
+def _optics_name(kind, name, at):
+    """The name, if the package knows such a glass or metal."""
+    from artist_py.scene import optics
+
+    known = optics.glasses() if kind == "glass" else optics.metals()
+    if name not in known:
+        raise failure(at, f"unknown {kind} {show(name)}{nearest(name, known)}")
+    return name

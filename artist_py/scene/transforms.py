@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from artist_py.scene.fields import Array, Forms, Node, Number, Table, fail, key, numbers
+from artist_py.scene.fields import Array, Forms, Node, Number, Table, failure, key, node, numbers
 from artist_py.scene.messages import expected
 
 COORDINATE_LIMIT = 1e18  # Embree treats what is farther away than 1.844e18 as infinitely far
@@ -29,7 +29,7 @@ def are_parallel(a, b):
     return a is None or b is None or math.hypot(*cross(a, b)) < 1e-9
 
 
-@dataclass(frozen=True)
+@node
 class Translate(Node):
     """Move by the vector, scene units."""
 
@@ -40,7 +40,7 @@ class Translate(Node):
         return [[1, 0, 0, x], [0, 1, 0, y], [0, 0, 1, z], [0, 0, 0, 1]]
 
 
-@dataclass(frozen=True)
+@node
 class Rotate(Node):
     """Turn around the axis through the origin, counter-clockwise seen from its tip: [x, y, z, degrees]."""
 
@@ -74,11 +74,11 @@ class Factors:
         else:
             factors = (coordinate(value, at),) * 3
         if any(abs(factor) * COORDINATE_LIMIT < 1 for factor in factors):
-            fail(at, expected("factors other than zero", value))
+            raise failure(at, expected("factors other than zero", value))
         return factors
 
 
-@dataclass(frozen=True)
+@node
 class Scale(Node):
     """Stretch along the axes, from the origin; a negative factor mirrors."""
 
@@ -89,7 +89,7 @@ class Scale(Node):
         return [[x, 0, 0, 0], [0, y, 0, 0], [0, 0, z, 0], [0, 0, 0, 1]]
 
 
-@dataclass(frozen=True)
+@node
 class View(Node):
     """A place to stand, a point to look at, and what is up there."""
 
@@ -108,7 +108,7 @@ class View(Node):
             yield "up", expected("a direction not parallel to the view", self.up)
 
 
-@dataclass(frozen=True)
+@node
 class LookAt(Node):
     """Move the origin to `from` and turn local z to point to `to`, local y to the side of `up`."""
 
@@ -121,7 +121,7 @@ class LookAt(Node):
         return [[*row] for row in zip(x, y, z, self.look_at.origin, strict=True)] + [[0, 0, 0, 1]]
 
 
-@dataclass(frozen=True)
+@node
 class Matrix(Node):
     """Any affine map: four rows, applied to columns [x, y, z, 1]."""
 
@@ -162,9 +162,9 @@ def cosine_sine(degrees):
 
 def matrix(steps):
     """Local to world of a list of steps, f64 (4, 4), applied to columns [x, y, z, 1]."""
-    import numpy
+    import numpy as np
 
-    product = numpy.eye(4)
+    product = np.eye(4)
     for item in steps:
-        product = numpy.array(item.matrix(), dtype=numpy.float64) @ product
+        product = np.array(item.matrix(), dtype=np.float64) @ product
     return product

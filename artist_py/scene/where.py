@@ -1,10 +1,10 @@
 """Where in which file something stands: cheap to keep, turned into a line only when a problem is reported."""
 
-import os
 import re
 from bisect import bisect_right
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from pathlib import Path
 
 from artist_py.errors import Problem
 
@@ -83,7 +83,7 @@ class Where:
     @property
     def folder(self):
         """The folder that paths written here are relative to: the file's, or for --set the current one."""
-        return "" if self.is_overridden else os.path.dirname(self.source.file)
+        return Path() if self.is_overridden else Path(self.source.file).parent
 
     def place(self):
         """File and line, as a message names them."""
@@ -105,7 +105,7 @@ def problem(node, key, message):
     return node.where.at(*keys).problem(message)
 
 
-_TOKEN = re.compile(
+_PART = re.compile(
     r'"""(?:\\.|[^\\])*?"{3,5}|\'\'\'.*?\'{3,5}|"(?:\\.|[^"\\\n])*"|\'[^\'\n]*\'|#[^\n]*|[{}\n,]|[^\s{},"\'#]+',
     re.DOTALL,
 )
@@ -117,16 +117,16 @@ def as_toml_1_0(text):
     `spanned_toml` knows TOML 1.0 only; all positions stay.
     """
     pieces, end, depth, comma = [], 0, 0, None
-    for match in _TOKEN.finditer(text):
-        token = match.group()
+    for match in _PART.finditer(text):
+        part = match.group()
         pieces.append(text[end : match.start()])
         end = match.end()
-        depth += (token == "{") - (token == "}")
-        if depth > 0 and token[0] in "#\n":
-            token = " " * len(token)
-        elif token == "}" and comma is not None:
+        depth += (part == "{") - (part == "}")
+        if depth > 0 and part[0] in "#\n":
+            part = " " * len(part)
+        elif part == "}" and comma is not None:
             pieces[comma] = " "
-        if token.strip():
-            comma = len(pieces) if token == "," else None
-        pieces.append(token)
+        if part.strip():
+            comma = len(pieces) if part == "," else None
+        pieces.append(part)
     return "".join([*pieces, text[end:]])

@@ -2,6 +2,8 @@
 
 import math
 import os
+import runpy
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -219,6 +221,13 @@ def test_luminance_matches_colour_science():
         ybar = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"][theirs.wavelengths][:, 1]
         expected = 683.002 * np.trapezoid(theirs.values * scale * ybar, theirs.wavelengths)
         assert luminance(light(Named(name), 380, 780), 380) == pytest.approx(expected, rel=1e-4)
+
+
+def test_packaged_tables_are_what_the_script_bakes():
+    pytest.importorskip("colour")
+    script = Path(data.FOLDER).parents[1] / "scripts" / "bake_tables.py"
+    bake = runpy.run_path(str(script))
+    assert bake["is_current"](bake["baked_tables"]())
 
 
 def test_luminance_of_the_definition_of_the_candela():

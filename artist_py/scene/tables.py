@@ -15,22 +15,23 @@ TRIANGLES, SMOOTH_TRIANGLES, PARALLELOGRAMS, QUADRICS = range(4)
 # Quadric kinds, each in its canonical frame (see geometry/quadrics.py).
 SPHERE, DISK, CYLINDER, CONE = range(4)
 
-# BSDF kinds.
-DIFFUSE, OREN_NAYAR, MIRROR, CONDUCTOR, DIELECTRIC, THIN_DIELECTRIC, PASS_THROUGH = range(7)
+# BSDF kinds; ABSORBER is black from both sides and ends every path.
+DIFFUSE, OREN_NAYAR, MIRROR, CONDUCTOR, DIELECTRIC, THIN_DIELECTRIC, PASS_THROUGH, ABSORBER = range(8)
 
 # Emitter kinds: how a point on the emitter is sampled.
 TRIANGLE_EMITTER, PARALLELOGRAM_EMITTER, SPHERE_EMITTER, QUADRIC_EMITTER = range(4)
 
 NO_EMITTER = -1
 
-vertex_dtype = np.dtype([("position", "f4", 3), ("normal", "f4", 3), ("uv", "f4", 2)])
+vertex_dtype = np.dtype([("position", "f4", 3), ("normal", "f4", 3), ("uv", "f4", 2)], align=True)
 
 quadric_dtype = np.dtype(
     [
         ("object_to_world", "f8", (3, 4)),  # canonical frame to render space (or to the instanced object's frame)
         ("world_to_object", "f8", (3, 4)),
         ("kind", "i8"),
-    ]
+    ],
+    align=True,
 )
 
 # One row per (instance, shape): instance 0 holds the shapes that stand directly in the scene.
@@ -40,9 +41,9 @@ placement_dtype = np.dtype(
         ("material", "i4"),
         ("emitter", "i4"),  # index of the emitter of primitive 0, or NO_EMITTER
         ("first", "i4"),  # index of primitive 0 in its pool (triangles, parallelograms or quadrics)
-        ("instance", "i4"),  # row in `Geometry.instances`, 0 for none
         ("flip", "f4"),  # -1 turns the normals round
-    ]
+    ],
+    align=True,
 )
 
 instance_dtype = np.dtype(
@@ -62,11 +63,12 @@ material_dtype = np.dtype(
         ("eta", "i4"),  # row: conductor's real index of refraction, or the dispersive dielectric's
         ("absorption", "i4"),  # row: conductor's imaginary index of refraction
         ("is_dispersive", "i4"),
-        ("priority", "i4"),  # of overlapping dielectrics the one of highest priority fills the space
+        ("medium", "i4"),  # dielectric: its row in `Scene.media`, from 1
         ("texture", "i4"),  # row of the textures that replaces `reflectance`, or -1
         ("ior", "f8"),  # dielectric's index of refraction where it does not depend on wavelength
         ("roughness", "f8"),  # Oren-Nayar: standard deviation of facet slopes' angle, radians
-    ]
+    ],
+    align=True,
 )
 
 emitter_dtype = np.dtype(
@@ -79,19 +81,33 @@ emitter_dtype = np.dtype(
         ("pdf_select", "f8"),  # probability of choosing this emitter, discrete
         ("area", "f8"),  # render-space units squared
         ("origin", "f8", 3),  # triangle and parallelogram: a corner; sphere: its centre
-        ("edge0", "f8", 3),  # sphere: edge0[0] is the radius
+        ("edge0", "f8", 3),
         ("edge1", "f8", 3),
-        ("normal", "f8", 3),  # of the emitting side (after `flip`)
-    ]
+        ("normal", "f8", 3),  # triangle and parallelogram: unit, on the emitting side
+        ("radius", "f8"),  # sphere
+        ("flip", "f8"),  # sphere and quadric: -1 where the inner side is the front
+    ],
+    align=True,
 )
 
-alias_dtype = np.dtype([("probability", "f8"), ("alias", "i8")])
+# What fills space: row 0 is the vacuum, then one row per dielectric material.
+medium_dtype = np.dtype(
+    [
+        ("priority", "i4"),  # where dielectrics overlap the highest fills the space
+        ("eta", "i4"),  # row of the spectra if dispersive, else -1
+        ("ior", "f8"),
+    ],
+    align=True,
+)
+
+alias_dtype = np.dtype([("probability", "f8"), ("alias", "i8")], align=True)
 
 
 class Geometry(NamedTuple):
     """Where things are; `embree` is the address of the committed RTCScene."""
 
     embree: int
+    first_instance: int  # geometry ID of instance 0 in the top scene
     placements: np.ndarray  # placement_dtype
     vertices: np.ndarray  # vertex_dtype, shared with Embree
     triangles: np.ndarray  # uint32 (n, 3) into vertices, shared with Embree
@@ -158,14 +174,16 @@ class Filter(NamedTuple):
 
 
 class Camera(NamedTuple):
-    """A perspective camera in render space: direction of film point (x, y) = forward + x right + y up (down the image)."""
+    """A perspective camera in render space; film point (x, y) in pixels lies at `corner + x right + y down`."""
 
     position: object  # Vec3
     forward: object  # Vec3, unit
-    right: object  # Vec3, per pixel
-    down: object  # Vec3, per pixel
-    corner: object  # Vec3: direction through the corner of pixel (0, 0), length 1 along `forward`
+    right: object  # Vec3, one pixel to the right at distance 1 along `forward`
+    down: object  # Vec3, one pixel down
+    corner: object  # Vec3, the outer corner of pixel (0, 0), at distance 1 along `forward`
     lens: Lens | None
+    clip: float | None  # far from the scene, rays start at this distance from its centre instead
+    media: int  # the dielectrics that the camera stands in, see transport/media.py
 
 
 class Scene(NamedTuple):
@@ -175,5 +193,15 @@ class Scene(NamedTuple):
     materials: np.ndarray  # material_dtype
     spectra: Spectra
     emitters: Emitters | None
+    media: np.ndarray | None  # medium_dtype; absent where no dielectric touches another
     textures: object | None
     needs: Needs
+
+
+def as_records(table):
+    """The table with its record arrays as `np.recarray`, so that plain Python reads fields as kernels do."""
+    if isinstance(table, np.ndarray) and table.dtype.names:
+        return table.view(np.recarray)
+    if isinstance(table, tuple) and hasattr(table, "_fields"):
+        return type(table)(*(as_records(field) for field in table))
+    return table

@@ -1,0 +1,33 @@
+"""Hero wavelengths: one number places all lanes of a path (Wilkie et al. 2014), warped by a density (theory 2.5).
+
+The density is *defined* by the nodes of its inverse distribution: lambda(u) is linear between them, and so
+p(lambda) = 1 / (n (node[i+1] - node[i])) exactly.
+"""
+
+from ..jit import function
+from .vector import lane_count, with_lane
+
+
+@function
+def sample_wavelengths(nodes, zero, u):
+    """`(wavelengths, weights)`: C stratified wavelengths in nm, and 1 / (C p) of each in nm.
+
+    `zero` fixes the number of lanes C; `nodes` has shape (n + 1,).
+    """
+    count = lane_count(zero)
+    wavelengths, weights = zero, zero
+    for i in range(count):
+        wavelength, width = _inverse(nodes, (u + i) / count)
+        wavelengths = with_lane(wavelengths, i, wavelength)
+        weights = with_lane(weights, i, width / count)
+    return wavelengths, weights
+
+
+@function
+def _inverse(nodes, u):
+    """Wavelength at u, nm, and 1 / p there."""
+    entries = nodes.shape[0] - 1
+    scaled = u * entries
+    index = min(int(scaled), entries - 1)
+    width = nodes[index + 1] - nodes[index]
+    return nodes[index] + (scaled - index) * width, width * entries

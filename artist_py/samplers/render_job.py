@@ -1,0 +1,229 @@
+"""Rendering a compiled scene: budget, threads, film, snapshots; the image sampler does the iterations."""
+
+import resource
+import time
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..errors import OptionError
+from ..film.accumulation import Film
+from ..film.image import FilmImage
+from .aovs import render_aovs
+from .stochastic import StochasticSampler
+
+PROGRESS_SECONDS = 0.25
+BAND_NM = 10
+
+
+@dataclass(frozen=True)
+class RenderSettings:
+    """When to stop and what to keep; limits that are `None` do not apply, at least one of the first three must."""
+
+    iterations: int | None = None
+    time_seconds: float | None = None
+    error: float | None = None  # estimated relMSE
+    threads: int = 1
+    save_every_seconds: float | None = None
+    spectral: bool = False
+    aovs: tuple = ()
+    max_memory_bytes: int | None = None
+
+
+@dataclass(frozen=True)
+class RenderResult:
+    """The image and how it came about."""
+
+    film: FilmImage
+    statistics: dict
+    interrupted: bool
+
+
+class Silence:
+    """An observer that says nothing."""
+
+    def __getattr__(self, name):
+        return lambda *args, **kwargs: None
+
+
+@dataclass
+class _Run:
+    """The state of one render."""
+
+    compiled: object
+    settings: RenderSettings
+    observer: object
+    stop: object
+    begun: float = 0.0
+    last_save: float = 0.0
+    last_progress: float = -1.0
+    phases: dict = field(default_factory=dict)
+
+
+def render(compiled, settings, observer=None, stop=None):
+    """Render until a limit is reached or `stop` (a threading.Event) is set; returns a `RenderResult`."""
+    run = _Run(compiled, settings, observer or Silence(), stop)
+    check_memory(compiled, settings)
+    film = _film_of(compiled, settings)
+    for text in compiled.warnings:
+        run.observer.warning(text)
+    with StochasticSampler(compiled, film, settings.threads) as sampler:
+        seconds = sampler.compile_kernels(run.observer)
+        run.observer.started(_plan(compiled, settings))
+        run.begun = run.last_save = time.monotonic()
+        cpu_begun = time.process_time()
+        interrupted = _iterate(run, sampler, film)
+        run.phases = {"path_tracing": time.monotonic() - run.begun}
+        cpu = time.process_time() - cpu_begun
+        aovs = render_aovs(compiled, sampler, settings, run.observer) if settings.aovs else {}
+    image = film_image(compiled, settings, film, aovs)
+    statistics = _statistics(run, sampler, film, seconds, cpu)
+    return RenderResult(image, statistics, interrupted)
+
+
+def _iterate(run, sampler, film):
+    """Add iterations to the film until it is good enough; returns whether it was interrupted."""
+    error = None
+    while not _is_done(run, film, error):
+        if not sampler.iterate(film.iterations, run.stop):
+            if film.iterations == 0:
+                sampler.add_to_film(0)
+                run.observer.warning("interrupted in the first iteration: the tiles not reached are black")
+            return True
+        if run.stop is not None and run.stop.is_set():
+            return True
+        error = _report(run, film, error)
+    return False
+
+
+def _is_done(run, film, error):
+    settings = run.settings
+    if settings.iterations is not None and film.iterations >= settings.iterations:
+        return True
+    if film.iterations == 0:
+        return False
+    if settings.time_seconds is not None and time.monotonic() - run.begun >= settings.time_seconds:
+        return True
+    return settings.error is not None and error is not None and error <= settings.error
+
+
+def _report(run, film, error):
+    """Tell the observer how far it is, now and then; returns the newest error estimate."""
+    now = time.monotonic()
+    seconds = now - run.begun
+    is_due = now - run.last_progress >= PROGRESS_SECONDS
+    # Only with as many odd as even iterations, so that looking more often does not stop the render on a lucky value.
+    if (is_due or run.settings.error is not None) and film.iterations % 2 == 0:
+        error = film.error_estimate()
+    if is_due:
+        run.last_progress = now
+        paths = film.iterations * film.height * film.width
+        run.observer.progress(
+            film.iterations, run.settings.iterations, seconds, paths, paths / max(seconds, 1e-9), error
+        )
+    every = run.settings.save_every_seconds
+    if every is not None and now - run.last_save >= every:
+        run.observer.snapshot(film_image(run.compiled, run.settings, film, {}))
+        run.last_save = time.monotonic()
+    return error
+
+
+def crop_of(graph):
+    """Pixels to render, (x0, x1, y0, y1), half open."""
+    width, height = graph.film.resolution
+    return graph.film.crop or (0, width, 0, height)
+
+
+def band_edges(compiled):
+    """Edges of the spectral bands, nm."""
+    first, last = compiled.wavelength_range
+    return np.arange(first, last + BAND_NM - 1, BAND_NM, dtype=float)
+
+
+def _film_of(compiled, settings):
+    x0, x1, y0, y1 = crop_of(compiled.graph)
+    bands = len(band_edges(compiled)) - 1 if settings.spectral else 0
+    return Film(y1 - y0, x1 - x0, "variance" in settings.aovs, bands)
+
+
+def memory_estimate(compiled, settings):
+    """Bytes that a render needs beyond the interpreter: `{what: bytes}`."""
+    x0, x1, y0, y1 = crop_of(compiled.graph)
+    pixels = (x1 - x0) * (y1 - y0)
+    bands = len(band_edges(compiled)) - 1 if settings.spectral else 0
+    geometry = compiled.scene.geometry
+    arrays = [array for array in geometry if isinstance(array, np.ndarray)]
+    emitters = compiled.scene.emitters
+    faces = len(geometry.triangles) + len(geometry.parallelograms)
+    return {
+        "film": pixels * (12 + 24 + 12 + (24 if "variance" in settings.aovs else 0) + 12 * bands),
+        "auxiliary outputs": pixels * 60 if set(settings.aovs) - {"variance"} else 0,
+        "geometry": sum(array.nbytes for array in arrays) + (emitters.records.nbytes if emitters else 0),
+        "acceleration structure": 110 * faces,
+        "spectra": compiled.spectra.nbytes,
+    }
+
+
+def check_memory(compiled, settings):
+    """Raise an `OptionError` if the render cannot stay within `max_memory_bytes`."""
+    if settings.max_memory_bytes is None:
+        return
+    needed = sum(memory_estimate(compiled, settings).values())
+    if needed > settings.max_memory_bytes:
+        raise OptionError(
+            f"--max-memory: this render needs about {needed / 2**20:.0f} MiB, and "
+            f"{settings.max_memory_bytes / 2**20:.0f} MiB are allowed; render it in parts with --crop"
+        )
+
+
+def _plan(compiled, settings):
+    x0, x1, y0, y1 = crop_of(compiled.graph)
+    render = compiled.graph.render
+    return {
+        "integrator": render.integrator,
+        "pixels": f"{x1 - x0} x {y1 - y0}",
+        "threads": settings.threads,
+        "memory": f"{sum(memory_estimate(compiled, settings).values()) / 2**20:.0f} MiB",
+    }
+
+
+def film_image(compiled, settings, film, aovs):
+    """The film as the outputs take it."""
+    graph = compiled.graph
+    edges = band_edges(compiled)
+    return FilmImage(
+        rgb=film.mean(),
+        iterations=film.iterations,
+        resolution=tuple(graph.film.resolution),
+        crop=crop_of(graph),
+        variance=film.variance(),
+        spectral=film.spectral(),
+        band_centres=0.5 * (edges[1:] + edges[:-1]) if settings.spectral else None,
+        aovs={name: values for name, values in aovs.items() if name != "variance"},
+        rejected=tuple(film.rejected),
+        world_to_camera=compiled.matrices[0],
+        world_to_ndc=compiled.matrices[1],
+    )
+
+
+def _statistics(run, sampler, film, compile_seconds, cpu):
+    rays, shadow_rays = sampler.rays
+    seconds = run.phases["path_tracing"]
+    paths = film.iterations * film.height * film.width
+    return {
+        "scene_seconds": run.compiled.seconds,
+        "compile_seconds": compile_seconds,
+        "cache_hits": sampler.cache_hits,
+        "cache_misses": sampler.cache_misses,
+        "phase_seconds": run.phases,
+        "cpu_seconds": cpu,
+        "threads": run.settings.threads,
+        "paths": paths,
+        "paths_per_second": paths / max(seconds, 1e-9),
+        "rays": rays,
+        "shadow_rays": shadow_rays,
+        "rays_per_second": (rays + shadow_rays) / max(seconds, 1e-9),
+        "peak_memory_bytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024,
+        "rejected_contributions": film.rejected_count,
+        "error_estimate": film.error_estimate(),
+    }

@@ -1,0 +1,144 @@
+"""The stochastic image sampler: one path per pixel and iteration, tiles taken by threads, sums in a fixed order."""
+
+import time
+from concurrent.futures import ThreadPoolExecutor, wait
+
+import numpy as np
+
+from ..core.vector import Spectrum
+from ..film.accumulation import REJECTED_KEPT, add_rows
+from ..integrators.path_tracing import RAYS, SHADOW_RAYS, STOP, Pass, trace_paths
+from ..jit import cache_statistics
+from ..transport.roulette import Limits
+from ..transport.sensing import Bands, Sensing
+from .wavelengths import resolve_spectra, shared_wavelengths
+
+STRATIFIED_PAIRS = 12  # the film, the lens, the wavelengths and three vertices; see benchmarks/
+STOP_POLL_SECONDS = 0.05
+ANNOUNCE_SECONDS = 1.0
+COMPILE_SECONDS_HINT = 15
+
+
+class StochasticSampler:
+    """Drives the path tracer over a film; a context manager, because it owns threads."""
+
+    def __init__(self, compiled, film, threads):
+        self.compiled, self.film, self.threads = compiled, film, threads
+        graph = compiled.graph
+        render, (width, height) = graph.render, graph.film.resolution
+        self.crop = tuple(graph.film.crop or (0, width, 0, height))
+        self.width, self.seed = width, render.seed
+        self.limits = Limits(render.max_path_length, render.roulette_length)
+        self.stratified_pairs = STRATIFIED_PAIRS if render.sampler == "sobol" else 0
+        self.image = np.zeros((film.height, film.width, 3), np.float32)
+        self.bands = self._bands()
+        self.rays = (0, 0)
+        self.cache_hits = self.cache_misses = 0
+        self.pool = ThreadPoolExecutor(threads)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        self.pool.shutdown()
+
+    def _bands(self):
+        if not self.film.n_bands:
+            return None
+        first, last = self.compiled.wavelength_range
+        shape = (self.film.height, self.film.width, self.film.n_bands)
+        return Bands(np.zeros(shape, np.float32), float(first), (last - first) / self.film.n_bands)
+
+    # --- one iteration
+
+    def iterate(self, iteration, stop=None):
+        """Trace one path per pixel and add them to the film; `False` if `stop` was set before all were traced."""
+        progress = np.zeros(4, np.int64)
+        arguments = self._arguments(iteration, progress)
+        self._run([(trace_paths, arguments)] * self.threads, stop, progress)
+        if progress[STOP]:
+            return False
+        self.add_to_film(iteration)
+        self.rays = self.rays[0] + int(progress[RAYS]), self.rays[1] + int(progress[SHADOW_RAYS])
+        return True
+
+    def _arguments(self, iteration, progress):
+        compiled = self.compiled
+        scene, sensing = self.scene_and_sensing(iteration, self.bands)
+        work = Pass(self.seed, iteration, self.stratified_pairs, self.crop, self.width, progress)
+        return scene, compiled.camera, compiled.pixel_filter, sensing, self.limits, work, self.image
+
+    def scene_and_sensing(self, iteration, bands):
+        """The scene's tables and the sensor at the wavelengths of `iteration`."""
+        compiled = self.compiled
+        render = compiled.graph.render
+        zero = Spectrum(np.zeros(render.hero_count))
+        if render.wavelengths != "shared":
+            return compiled.scene, Sensing(zero, compiled.nodes, None, bands)
+        shared = shared_wavelengths(compiled.nodes, render.hero_count, render.seed, iteration)
+        spectra = resolve_spectra(compiled.spectra, compiled.ior_rows, compiled.wavelength_range[0], shared[0])
+        return compiled.scene._replace(spectra=spectra), Sensing(zero, compiled.nodes, shared, bands)
+
+    def add_to_film(self, iteration):
+        """Add the image of the iteration to the film, in row order whatever the threads."""
+        film, height = self.film, self.film.height
+        edges = np.linspace(0, height, self.threads + 1).astype(int)
+        places = [np.zeros((REJECTED_KEPT, 2), np.int64) for _ in range(self.threads)]
+        jobs = [
+            (add_rows, self._rows(iteration, edges[i], edges[i + 1], places[i])) for i in range(self.threads)
+        ]
+        for count, where in zip(self._run(jobs), places, strict=True):
+            if count:
+                film.reject(count, where, (self.crop[0], self.crop[2]), iteration)
+        film.iterations += 1
+
+    def _rows(self, iteration, first, end, places):
+        film = self.film
+        bands = None if self.bands is None else self.bands.image
+        is_odd = bool(iteration & 1)
+        return (
+            self.image, film.sums, film.odd_sums, film.squares, bands, film.band_sums, is_odd, first, end, places,
+        )  # fmt: skip
+
+    def _run(self, jobs, stop=None, progress=None):
+        """Run `(kernel, arguments)` on the threads; a `stop` that is set meanwhile is passed on through `progress`."""
+        futures = [self.pool.submit(kernel, *arguments) for kernel, arguments in jobs]
+        pending = set(futures)
+        while pending:
+            _, pending = wait(pending, STOP_POLL_SECONDS if stop is not None else None)
+            if pending and stop is not None and stop.is_set():
+                progress[STOP] = 1
+        return [future.result() for future in futures]
+
+    # --- compilation
+
+    def compile_kernels(self, observer):
+        """Compile the kernels, or load them from the cache; returns seconds. Says so if it takes a while."""
+        calls = [
+            (trace_paths, self._arguments(0, np.zeros(4, np.int64))),
+            (add_rows, self._rows(0, 0, 0, np.zeros((REJECTED_KEPT, 2), np.int64))),
+        ]
+        return self.compile_calls(calls, observer)
+
+    def compile_calls(self, calls, observer):
+        """Compile each `(kernel, arguments)` for the types of its arguments."""
+        begun = time.monotonic()
+        before = cache_statistics([kernel for kernel, _ in calls])
+        future = self.pool.submit(lambda: [compile_for(kernel, arguments) for kernel, arguments in calls])
+        wait([future], ANNOUNCE_SECONDS)
+        is_slow = not future.done()
+        if is_slow:
+            observer.compiling("for this scene's features", COMPILE_SECONDS_HINT)
+        future.result()
+        seconds = time.monotonic() - begun
+        if is_slow:
+            observer.compiled(seconds)
+        after = cache_statistics([kernel for kernel, _ in calls])
+        self.cache_hits += after[0] - before[0]
+        self.cache_misses += after[1] - before[1]
+        return seconds
+
+
+def compile_for(kernel, arguments):
+    """Have `kernel` ready for arguments of these types, without calling it."""
+    kernel.compile(tuple(kernel.typeof_pyval(argument) for argument in arguments))

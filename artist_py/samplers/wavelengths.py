@@ -1,0 +1,45 @@
+"""The wavelengths of an iteration, and the spectra at them."""
+
+import numpy as np
+
+from ..core.vector import Spectrum
+from ..scene.tables import Spectra
+from ..transport.sensing import Sensing
+
+GOLDEN = 0.6180339887498949
+
+
+def van_der_corput(index):
+    """Radical inverse of `index` in base 2, in [0, 1)."""
+    return int(f"{index:b}"[::-1], 2) / (1 << index.bit_length()) if index else 0.0
+
+
+def shared_wavelengths(nodes, count, seed, iteration):
+    """Wavelengths (nm) and weights 1 / (C p) (nm) that all paths of `iteration` share, float64 (2, C).
+
+    The offsets follow van der Corput's sequence, shifted at random; even and odd iterations have shifts of their own,
+    like all their random numbers (core/rng.py).
+    """
+    shift = np.random.default_rng([seed, iteration & 1]).random()
+    offset = (shift + van_der_corput(iteration >> 1)) % 1.0
+    entries = len(nodes) - 1
+    position = (offset + np.arange(count)) / count * entries
+    index = np.minimum(position.astype(int), entries - 1)
+    width = nodes[index + 1] - nodes[index]
+    return np.array([nodes[index] + (position - index) * width, width * entries / count])
+
+
+def resolve_spectra(dense, ior_rows, first, wavelengths):
+    """`Spectra` at the given wavelengths only: bins for spectra, linear between their centres for indices of refraction."""
+    last = dense.shape[1] - 1
+    bins = np.clip((wavelengths - first).astype(int), 0, last)
+    values = dense[:, bins]
+    if ior_rows:
+        centres = first + 0.5 + np.arange(last + 1)
+        values[ior_rows] = [np.interp(wavelengths, centres, dense[row]) for row in ior_rows]
+    return Spectra(np.ascontiguousarray(values), None, float(first))
+
+
+def own_wavelengths(nodes, count, bands):
+    """`Sensing` for paths with wavelengths of their own."""
+    return Sensing(Spectrum(np.zeros(count)), nodes, None, bands)

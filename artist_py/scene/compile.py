@@ -1,0 +1,176 @@
+"""From the scene graph to the tables that kernels read, and the plan of what this scene needs and leaves out."""
+
+import time
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from artist_py.core.vector import vec3
+from artist_py.errors import Problem, SceneError
+from artist_py.film.color import flat_luminance, sensor_table
+from artist_py.film.wavelengths import inverse_cdf, wavelength_density
+from artist_py.scene import tables
+from artist_py.scene.compile_camera import camera_matrices, compile_camera, compile_filter
+from artist_py.scene.compile_emitters import EmitterCompiler
+from artist_py.scene.compile_geometry import GeometryCompiler, collect_parts, space_of
+from artist_py.scene.compile_materials import NEED_NAMES, MaterialCompiler, SpectrumRows
+from artist_py.transport.initial_media import media_at
+
+VISIBLE = 380, 780  # nm
+EMITTER_NEEDS = {
+    tables.TRIANGLE_EMITTER: "triangle_emitters",
+    tables.PARALLELOGRAM_EMITTER: "parallelogram_emitters",
+    tables.SPHERE_EMITTER: "sphere_emitters",
+    tables.QUADRIC_EMITTER: "quadric_emitters",
+}
+MANY_DIELECTRICS = 2000  # with more of them it is taken for granted that some touch
+
+
+@dataclass
+class CompiledScene:
+    """A scene ready to be rendered; `scene`, `camera` and `pixel_filter` are what kernels read."""
+
+    graph: Any
+    scene: tables.Scene
+    camera: tables.Camera
+    pixel_filter: tables.Filter
+    nodes: np.ndarray  # inverse distribution of wavelengths, nm
+    wavelength_range: tuple
+    spectra: np.ndarray  # float32 (rows, bins), the dense table whatever the wavelength mode
+    ior_rows: list
+    space: Any
+    matrices: tuple
+    embree: Any  # keeps the BVH alive
+    warnings: list
+    reasons: dict = field(default_factory=dict)
+    seconds: float = 0.0
+
+
+def compile_scene(graph, threads=None):
+    """Load, tabulate and build everything; raises `SceneError` with all problems that are found on the way."""
+    import os
+
+    begun = time.perf_counter()
+    if graph.camera is None:
+        raise SceneError([Problem("missing, expected a camera", _file_of(graph), None, "camera")])
+    parts = collect_parts(graph)
+    space = space_of(parts, [graph.camera.position, graph.camera.look_at])
+    geometry = GeometryCompiler(graph, parts, space, threads or len(os.sched_getaffinity(0)))
+    first, last = graph.render.wavelength_range or VISIBLE
+    spectra = SpectrumRows(first, last)
+    observer = graph.film.observer
+    sensor = sensor_table(first, last, observer) * (flat_luminance(observer) / graph.film.white_luminance)
+    sensor_rows = [spectra.row(row) for row in sensor]
+    emitters, materials = _lights_and_materials(graph, geometry, spectra)
+    embree = geometry.build_embree()
+    placements = geometry.placements(materials.rows)
+    media = materials.media_table() if _dielectrics_touch(geometry, placements, materials.table) else None
+    emitter_table = emitters.table()
+    needs = _needs(graph, geometry, materials, emitter_table, media)
+    dense = spectra.dense()
+    assert sensor_rows == [0, 1, 2]  # noqa: S101 - an observer's three responses differ
+    scene = tables.Scene(
+        tables.Geometry(
+            embree.address,
+            geometry.n_direct,
+            placements,
+            geometry.vertices,
+            geometry.triangles,
+            geometry.parallelograms,
+            geometry.quadrics if needs.quadrics or needs.quadric_emitters else None,
+            geometry.instances(),
+        ),
+        materials.table,
+        tables.Spectra(None, dense, float(first)),
+        emitter_table,
+        media,
+        None,
+        needs,
+    )
+    camera = compile_camera(graph.camera, graph.film, space)
+    scene, camera = _with_camera_media(scene, camera, materials)
+    nodes = inverse_cdf(wavelength_density(sensor, emitters.light), first)
+    return CompiledScene(
+        graph,
+        scene,
+        camera,
+        compile_filter(graph.film),
+        nodes,
+        (first, last),
+        dense,
+        spectra.ior_rows,
+        space,
+        camera_matrices(graph.camera, graph.film),
+        embree,
+        geometry.warnings,
+        seconds=time.perf_counter() - begun,
+    )
+
+
+def _file_of(graph):
+    return graph.where.source.file if graph.where else None
+
+
+def validate(graph):
+    """Find every problem that only loading shows, without building anything to render."""
+    compile_scene(graph)
+
+
+def _lights_and_materials(graph, geometry, spectra):
+    """Both compiled, their problems reported together."""
+    problems, result = [], []
+    used = {placed.material for placed in geometry.placed}
+    for build in (lambda: EmitterCompiler(geometry, spectra), lambda: MaterialCompiler(graph, used, spectra)):
+        try:
+            result.append(build())
+        except SceneError as error:
+            problems.extend(error.problems)
+    if problems:
+        raise SceneError(problems)
+    return result
+
+
+def _dielectrics_touch(geometry, placements, materials):
+    """Whether the bounding boxes of two shapes of glass touch, so that a path can be in two media at once."""
+    is_glass = materials["kind"][placements["material"]] == tables.DIELECTRIC
+    placed = [each for each, glass in zip(geometry.placed, is_glass, strict=True) if glass]
+    if len(placed) > MANY_DIELECTRICS:
+        return True
+    if len(placed) < 2:
+        return False
+    boxes = np.array([geometry.bounds(each) for each in placed])
+    low, high = boxes[:, 0], boxes[:, 1]
+    touch = ((low[:, None] <= high[None]) & (low[None] <= high[:, None])).all(axis=2)
+    return bool(np.triu(touch, 1).any())
+
+
+def _needs(graph, geometry, materials, emitters, media):
+    kinds = {placed.part.kind for placed in geometry.placed}
+    used = set(materials.table["kind"]) - {tables.ABSORBER}
+    present = {NEED_NAMES[kind] for kind in used}
+    present |= {EMITTER_NEEDS[kind] for kind in set(emitters.records["kind"])} if emitters else set()
+    conditions = {
+        "dispersion": bool(materials.table["is_dispersive"].any()),
+        "media": media is not None,
+        "triangles": bool(kinds & {tables.TRIANGLES, tables.SMOOTH_TRIANGLES}),
+        "smooth_triangles": tables.SMOOTH_TRIANGLES in kinds,
+        "parallelograms": tables.PARALLELOGRAMS in kinds,
+        "quadrics": tables.QUADRICS in kinds,
+        "instances": bool(graph.instances),
+        "one_sided": bool((materials.table["two_sided"][1:] == 0).any()),
+        "shared_wavelengths": graph.render.wavelengths == "shared",
+    }
+    present |= {name for name, condition in conditions.items() if condition}
+    return tables.Needs(**dict.fromkeys(present, True))
+
+
+def _with_camera_media(scene, camera, materials):
+    """Scene and camera, where the camera may stand inside glass."""
+    if scene.needs.dielectric is None:
+        return scene, camera
+    media = materials.media_table()
+    inside = media_at(scene._replace(media=media), camera.position, vec3(*camera.forward.values))
+    if inside:
+        scene = scene._replace(media=media, needs=scene.needs._replace(media=True))
+    return scene, camera._replace(media=inside)

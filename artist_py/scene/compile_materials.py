@@ -1,0 +1,121 @@
+"""Materials and spectra of the scene graph to rows of tables."""
+
+import math
+
+import numpy as np
+
+from artist_py.errors import SceneError
+from artist_py.scene import graph as scene_graph
+from artist_py.scene import tables
+from artist_py.scene.optics import ior_table, is_dispersive, metal_table
+from artist_py.scene.spectra import check_reflectance, tabulate
+from artist_py.scene.where import problem
+
+MAX_MEDIA = 127  # slots of transport/media.py have eight bits
+
+KINDS = {
+    scene_graph.Diffuse: tables.DIFFUSE,
+    scene_graph.OrenNayar: tables.OREN_NAYAR,
+    scene_graph.Mirror: tables.MIRROR,
+    scene_graph.Conductor: tables.CONDUCTOR,
+    scene_graph.Dielectric: tables.DIELECTRIC,
+    scene_graph.ThinDielectric: tables.THIN_DIELECTRIC,
+    scene_graph.PassThrough: tables.PASS_THROUGH,
+}
+NEED_NAMES = {
+    tables.DIFFUSE: "diffuse",
+    tables.OREN_NAYAR: "oren_nayar",
+    tables.MIRROR: "mirror",
+    tables.CONDUCTOR: "conductor",
+    tables.DIELECTRIC: "dielectric",
+    tables.THIN_DIELECTRIC: "thin_dielectric",
+    tables.PASS_THROUGH: "pass_through",
+}
+
+
+class SpectrumRows:
+    """The scene's spectra as rows of 1 nm bins over [first, last) nm; equal spectra share a row."""
+
+    def __init__(self, first, last):
+        self.first, self.last = first, last
+        self.rows, self.index, self.ior_rows = [], {}, []
+
+    def row(self, table):
+        """Row number of a table (bins,)."""
+        table = np.ascontiguousarray(table, np.float64)
+        key = table.tobytes()
+        if key not in self.index:
+            self.index[key] = len(self.rows)
+            self.rows.append(table)
+        return self.index[key]
+
+    def ior_row(self, table):
+        """Row number of a refractive index: between bin centres it is read linearly, not by bin."""
+        row = self.row(table)
+        self.ior_rows.append(row)
+        return row
+
+    def dense(self):
+        """All rows, float32 (rows, bins)."""
+        return np.array(self.rows, np.float32)
+
+
+class MaterialCompiler:
+    """Fills material and medium rows; `rows` maps names (None: the black absorber) to row numbers."""
+
+    def __init__(self, graph, used, spectra):
+        self.spectra, self.problems = spectra, []
+        names = [name for name in graph.materials if name in used]
+        self.rows = {None: 0, **{name: i + 1 for i, name in enumerate(names)}}
+        self.table = np.zeros(len(names) + 1, tables.material_dtype)
+        self.media = [(0, -1, 1.0)]
+        self.table["kind"][0], self.table["texture"] = tables.ABSORBER, -1
+        for name in names:
+            self._fill(self.table[self.rows[name]], graph.materials[name])
+        if self.problems:
+            raise SceneError(self.problems)
+
+    def _fill(self, row, material):
+        row["kind"] = KINDS[type(material)]
+        row["two_sided"] = getattr(material, "two_sided", True)
+        try:
+            if hasattr(material, "reflectance"):
+                row["reflectance"] = self._reflectance(material)
+            if isinstance(material, scene_graph.OrenNayar):
+                row["roughness"] = math.radians(material.roughness)
+            if isinstance(material, scene_graph.Conductor):
+                row["eta"], row["absorption"] = self._metal(material)
+            if isinstance(material, scene_graph.Dielectric | scene_graph.ThinDielectric):
+                self._fill_ior(row, material)
+        except SceneError as error:
+            self.problems.extend(error.problems)
+
+    def _reflectance(self, material):
+        table = tabulate(material.reflectance, self.spectra.first, self.spectra.last, "reflectance")
+        message = check_reflectance(table, self.spectra.first)
+        if message:
+            raise SceneError([problem(material, "reflectance", message)])
+        return self.spectra.row(np.clip(table, 0.0, 1.0))
+
+    def _metal(self, material):
+        span = self.spectra.first, self.spectra.last
+        if material.metal is not None:
+            eta, k = metal_table(material.metal, *span, material)
+        else:
+            eta, k = (tabulate(value, *span, "reflectance") for value in (material.eta, material.k))
+        return self.spectra.row(eta), self.spectra.row(k)
+
+    def _fill_ior(self, row, material):
+        table = ior_table(material.ior, self.spectra.first, self.spectra.last)
+        row["ior"], row["eta"] = table[len(table) // 2], -1
+        if is_dispersive(table):
+            row["is_dispersive"], row["eta"] = 1, self.spectra.ior_row(table)
+        if isinstance(material, scene_graph.Dielectric):
+            if len(self.media) > MAX_MEDIA:
+                raise SceneError([problem(material, "type", f"expected at most {MAX_MEDIA} dielectric materials")])
+            row["medium"] = len(self.media)
+            self.media.append((material.priority, row["eta"], row["ior"]))
+
+    def media_table(self):
+        """Medium rows (medium_dtype)."""
+        return np.array(self.media, tables.medium_dtype)

@@ -1,0 +1,43 @@
+"""Ending paths: by length, and by Russian roulette (Arvo and Kirk 1990)."""
+
+from typing import NamedTuple
+
+from ..core.rng import random_number
+from ..core.vector import lane_max
+from ..jit import function
+from .subpath import with_throughput
+
+SURVIVAL_LIMIT = 0.95
+
+
+class Limits(NamedTuple):
+    """How long paths may get, in edges."""
+
+    max_length: int
+    roulette_length: int  # longer paths may be ended by Russian roulette
+
+
+@function
+def survival_probability(limits, length, path):
+    """Probability that `path`, about to get its edge number `length`, goes on.
+
+    It depends on the throughput and so stays out of all MIS weights (theory 1.8). The n^2 that refraction has put into
+    the throughput is taken out again, since it will leave with the medium.
+    """
+    if length <= limits.roulette_length:
+        return 1.0
+    return min(SURVIVAL_LIMIT, lane_max(path.throughput) * path.radiance_scale)
+
+
+@function
+def is_ended_by_roulette(limits, stream, length, path):
+    """Whether the path ends here."""
+    survival = survival_probability(limits, length, path)
+    return survival < 1.0 and random_number(stream, length) >= survival
+
+
+@function
+def after_roulette(limits, length, path):
+    """The path that survived, its throughput made up for those that did not."""
+    survival = survival_probability(limits, length, path)
+    return with_throughput(path, path.throughput * (1.0 / survival))

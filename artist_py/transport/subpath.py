@@ -1,0 +1,144 @@
+"""A walk from vertex to vertex: what a path carries, and one step of it."""
+
+import math
+from typing import NamedTuple
+
+from ..bsdf.dispatch import sample_bsdf
+from ..core.frame import Frame, frame_around, to_local, to_world
+from ..core.rng import random_pair
+from ..core.vector import Spectrum, Vec3, dot, splat, vec3
+from ..geometry.surface import Surface, leave_surface
+from ..jit import function
+from ..scene.tables import PASS_THROUGH
+from .media import ior_around, is_inside_another, media_beyond
+
+
+class Path(NamedTuple):
+    """The ray that a path is about to follow, and what it carries along."""
+
+    origin: Vec3
+    direction: Vec3  # unit
+    throughput: Spectrum  # product of f |cos| / pdf so far
+    pdf_solid_angle: float  # density of `direction` at `reference`, sr^-1; 0 if it is a delta direction
+    reference: Vec3  # the last vertex
+    radiance_scale: float  # (n here / n at the camera)^2, which the throughput has been divided by
+    ratio: Spectrum | None  # running r of theory (2.6); absent where no density depends on wavelength
+    media: int  # dielectrics around, see media.py
+    is_absorbed: bool
+
+
+@function
+def with_throughput(path, throughput):
+    """The path with another throughput."""
+    return Path(
+        path.origin,
+        path.direction,
+        throughput,
+        path.pdf_solid_angle,
+        path.reference,
+        path.radiance_scale,
+        path.ratio,
+        path.media,
+        path.is_absorbed,
+    )
+
+
+class Vertex(NamedTuple):
+    """A surface point in the shading frame; `wo` points back along the path."""
+
+    surface: Surface
+    frame: Frame
+    wo: Vec3
+
+
+@function
+def start_path(dispersion, origin, direction, wavelengths, media):
+    """A path that leaves the camera."""
+    one = splat(wavelengths, 1.0)
+    return Path(origin, direction, one, 0.0, origin, 1.0, _when(dispersion, one), media, False)
+
+
+@function
+def _when(needed, value):
+    if needed is None:
+        return None
+    return value
+
+
+@function
+def vertex_at(scene, surface, path):
+    """The path's vertex on `surface`, which its ray has hit."""
+    frame = frame_around(surface.shading_normal)
+    wo = to_local(frame, -path.direction)
+    return Vertex(surface, frame, _on_geometric_side(scene.needs.smooth_triangles, surface, path, wo))
+
+
+@function
+def _on_geometric_side(needed, surface, path, wo):
+    """`wo` on the side of the surface that it really is on, which interpolated normals may deny near silhouettes."""
+    if needed is None:
+        return wo
+    return vec3(wo.x, wo.y, math.copysign(wo.z, -dot(path.direction, surface.normal)))
+
+
+@function
+def is_on_side(needed, surface, w_world, w):
+    """Whether shading and geometric normal agree on the side of a direction, given in the world and in the frame."""
+    if needed is None:
+        return True
+    return w.z * dot(w_world, surface.normal) > 0.0
+
+
+@function
+def is_passed_through(scene, surface, material, path):
+    """Whether light goes on here as if nothing were there."""
+    if material.kind == PASS_THROUGH:
+        return True
+    is_entering = dot(path.direction, surface.normal) < 0.0
+    return is_inside_another(scene.needs.media, scene.media, material, is_entering, path.media)
+
+
+@function
+def go_straight(scene, surface, material, path):
+    """The path beyond a surface that is not there."""
+    is_entering = dot(path.direction, surface.normal) < 0.0
+    media = media_beyond(scene.needs.media, material, is_entering, path.media)
+    return Path(
+        leave_surface(surface, path.direction),
+        path.direction,
+        path.throughput,
+        path.pdf_solid_angle,
+        path.reference,
+        path.radiance_scale,
+        path.ratio,
+        media,
+        False,
+    )
+
+
+@function
+def scatter(scene, vertex, path, wavelengths, stream, pair, u_lobe):
+    """The path after sampling the BSDF at `vertex`; `pair` is the pair of random dimensions used."""
+    u, v = random_pair(stream, pair)
+    needs, surface = scene.needs, vertex.surface
+    material = scene.materials[surface.material]
+    is_entering = vertex.wo.z > 0.0
+    outside = ior_around(needs.media, scene, material, is_entering, path.media, wavelengths)
+    sample = sample_bsdf(
+        needs, material, scene.spectra, wavelengths, vertex.wo, u, v, u_lobe, path.ratio, outside, None
+    )
+    direction = to_world(vertex.frame, sample.wi)
+    is_kept = sample.pdf > 0.0 and is_on_side(needs.smooth_triangles, surface, direction, sample.wi)
+    is_refracted = sample.wi.z * vertex.wo.z < 0.0
+    beyond = media_beyond(needs.media, material, is_entering, path.media)
+    return Path(
+        leave_surface(surface, direction),
+        direction,
+        path.throughput * sample.weight,
+        0.0 if sample.is_delta else sample.pdf,
+        surface.position,
+        path.radiance_scale * sample.eta * sample.eta,
+        sample.ratio,
+        beyond if is_refracted else path.media,
+        not is_kept,
+    )

@@ -231,21 +231,20 @@ class Table:
     def __call__(self, value, at, known_apart=()):
         if not isinstance(value, dict):
             raise failure(at, expected(self.expected, value))
-        values, problems = {}, self._missing(value, at)
         known = keys_of(self.cls)
-        for name, item in value.items():
+        unknown = [name for name in value if name not in known and name not in known_apart]
+        strange = [at.at(name).problem(unknown_key(name, [*known, *known_apart], value)) for name in unknown]
+        values, problems = {}, self._missing(value, at)
+        for name in known.keys() & value.keys():
             try:
-                if name in known:
-                    values[known[name].name] = known[name].metadata["convert"](item, at.at(name))
-                elif name not in known_apart:
-                    raise failure(at.at(name), unknown_key(name, [*known, *known_apart], value))
+                values[known[name].name] = known[name].metadata["convert"](value[name], at.at(name))
             except SceneError as error:
                 problems += error.problems
         if not problems:
             node = self.cls(**values, where=at)
             problems = [problem(node, name, message) for name, message in node.problems()]
-        if problems:
-            raise SceneError(problems)
+        if strange or problems:
+            raise SceneError([*strange, *problems])
         return node
 
     def _missing(self, value, at):

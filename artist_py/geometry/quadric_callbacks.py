@@ -128,10 +128,12 @@ def report_occlusion(address):
 
 
 @functools.cache
-def quadric_callbacks():
-    """The compiled callbacks (bounds, intersect, occluded), each with its entry point as `.address`.
-
-    Compiled, or loaded from the kernel cache, at the first call; kept, since Embree may call them at any time.
-    """
+def _compiled_callbacks():
+    # Kept for good: Embree may call them as long as any scene lives.
     compiled = callback(types.void(types.intp))
     return compiled(report_bounds), compiled(report_closest_hit), compiled(report_occlusion)
+
+
+def quadric_callbacks():
+    """Addresses of the callbacks (bounds, intersect, occluded); the first call compiles or loads them from the cache."""
+    return tuple(each.address for each in _compiled_callbacks())

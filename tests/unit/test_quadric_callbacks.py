@@ -33,7 +33,7 @@ def device():
 
 @pytest.fixture(scope="module")
 def addresses():
-    return tuple(each.address for each in quadric_callbacks())
+    return quadric_callbacks()
 
 
 def random_maps(rng, n, size, spread):

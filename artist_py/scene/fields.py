@@ -79,7 +79,8 @@ class Number:
     def __call__(self, value, at):
         kinds = int if self.whole else (int, float)
         if isinstance(value, bool) or not isinstance(value, kinds):
-            raise failure(at, expected(self.expected, value))
+            found = repr(value) if isinstance(value, float) else show(value)
+            raise failure(at, f"expected {self.expected}, found {found}")
         if math.isnan(value) or math.isinf(value) or abs(value) > FLOAT_LIMIT:
             raise failure(at, expected("a finite number", value))
         if not self.allows(value):
@@ -201,7 +202,8 @@ class Reference:
         name = Text()(value, at)
         known = at.source.names.get(self.section, {})
         if name not in known and not at.source.names.get("incomplete"):
-            raise failure(at, f"unknown {self.section.removesuffix('s')} {show(name)}{nearest(name, known)}")
+            hint = nearest(name, known) or f", the scene has no {self.section}"
+            raise failure(at, f"unknown {self.section.removesuffix('s')} {show(name)}{hint}")
         return name
 
 
@@ -235,7 +237,7 @@ class Table:
         unknown = [name for name in value if name not in known and name not in known_apart]
         strange = [at.at(name).problem(unknown_key(name, [*known, *known_apart], value)) for name in unknown]
         values, problems = {}, self._missing(value, at)
-        for name in known.keys() & value.keys():
+        for name in (name for name in value if name in known):
             try:
                 values[known[name].name] = known[name].metadata["convert"](value[name], at.at(name))
             except SceneError as error:
@@ -293,5 +295,5 @@ class Forms:
         if not given:
             raise failure(at, expected(self.expected, value))
         if len(given) > 1:
-            raise failure(at, f"expected one of {listing(given)}, found both")
+            raise failure(at, f"expected only one of {listing(given)}")
         return Table(self.classes[given[0]])(value, at)

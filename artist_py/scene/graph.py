@@ -112,13 +112,17 @@ CAMERAS = {"pinhole": Pinhole, "thin-lens": ThinLens}
 class Merging(Node):
     """[render.merging]: photons."""
 
-    radius: float = key(Number(above=0), 0.003)  # of the first iteration, in bounding radii of the scene
+    radius: float | None = key(Number(above=0), None)  # in bounding radii of the scene; default: 0.003
     radius_pixels: float | None = key(Number(above=0), None)  # instead: pixels at the vertex
     alpha: float = key(Number(above=0, at_most=1), 0.75)  # how the radius shrinks; 1: it does not
     light_paths: float = key(Number(above=0), 1.0)  # per pixel
 
+    def __post_init__(self):
+        if self.radius is None and self.radius_pixels is None:
+            object.__setattr__(self, "radius", 0.003)
+
     def problems(self):
-        if self.radius_pixels is not None and self.radius != 0.003:
+        if self.radius_pixels is not None and self.radius is not None:
             yield "radius_pixels", "expected either radius or radius_pixels, found both"
 
 

@@ -1,6 +1,7 @@
 """The files of a scene: the one asked for and, once each, all it includes; parsed, not yet understood."""
 
 import os
+import re
 from pathlib import Path
 
 from artist_py.errors import Problem, SceneError
@@ -33,8 +34,8 @@ def _load(text, file, chain, sources, problems):
     sources.append(source)
     chain += (file,)
     for included, at in _included(source):
-        if any(_is_same(included, other) for other in chain):
-            problems.append(at.problem(f"includes itself: {' -> '.join([*chain, included])}"))
+        if same := [other for other in chain if _is_same(included, other)]:
+            problems.append(at.problem(f"includes itself: {' -> '.join([*chain, *same])}"))
         elif not any(_is_same(included, other.file) for other in sources):
             try:
                 included_text = read_text(included)
@@ -89,7 +90,13 @@ def parse(text, file):
     try:
         return Source(file, text, tomli.loads(text))
     except tomli.TOMLDecodeError as error:
-        message = error.msg[:1].lower() + error.msg[1:]
-        raise SceneError([Problem(f"{message}, column {error.colno}", file, error.lineno)]) from None
-    except (ValueError, RecursionError) as error:  # a number of thousands of digits, or nested too deeply
-        raise SceneError([Problem(str(error).lower(), file)]) from None
+        text = re.sub(r"\('(.*?)',?\)", lambda keys: keys[1].replace("', '", "."), error.msg)
+        text = text.replace("Cannot overwrite a value", "a key is given twice")
+        message = f"not TOML: {text[:1].lower()}{text[1:]}, column {error.colno}"
+        raise SceneError([Problem(message, file, error.lineno)]) from None
+    except RecursionError:
+        raise SceneError([Problem("not TOML: nested too deeply", file)]) from None
+    except ValueError:  # Python's limit, which tomli passes on
+        raise SceneError(
+            [Problem("expected numbers of fewer digits, found one of thousands", file)]
+        ) from None

@@ -13,11 +13,11 @@ def show(value, depth=0):
         text = str(value) if value.bit_length() <= 128 else "a number of more than 128 bits"
     elif isinstance(value, dict):
         items = [f"{name} = {show(v, depth + 1)}" for name, v in list(value.items())[:8]] if depth < 3 else []
-        text = "{ " + ", ".join(items) + " }" if items else "a table"
+        text = "{ " + ", ".join(items) + " }" if items else "a table" if value else "{}"
     elif isinstance(value, list | tuple):
         text = "[" + ", ".join(show(v, depth + 1) for v in value[:16]) + "]" if depth < 3 else "an array"
     else:
-        text = str(value).removesuffix(".0") if depth else str(value)
+        text = str(value).removesuffix(".0")
     return text if len(text) <= 80 else text[:77] + "..."
 
 

@@ -20,25 +20,27 @@ def spectrum_at(spectra, row, wavelengths):
 # both cases.
 @function
 def _read(resolved, dense, first, row, wavelengths):
-    if dense is None:
-        return _read_resolved(resolved, row, wavelengths)
+    if resolved is None:
+        return _read_bins(dense, first, row, wavelengths)
     values = wavelengths
-    last_bin = dense.shape[1] - 1
+    # Unsigned, because numba would add a test for negative indices to every read.
+    row = np.uintp(row)
     for i in range(lane_count(wavelengths)):
-        # A wavelength just below the upper end may have been rounded up to it.
-        bin_index = min(int(lane(wavelengths, i) - first), last_bin)
-        values = with_lane(values, i, dense[np.uintp(row), np.uintp(bin_index)])
+        values = with_lane(values, i, resolved[row, np.uintp(i)])
     return values
 
 
 @function
-def _read_resolved(resolved, row, wavelengths):
-    if resolved is None:
-        return black(wavelengths)
+def _read_bins(dense, first, row, wavelengths):
     values = wavelengths
-    # Unsigned, because numba would add a test for negative indices to every read.
+    if dense is None:
+        return values
+    row = np.uintp(row)
+    last_bin = dense.shape[1] - 1
     for i in range(lane_count(wavelengths)):
-        values = with_lane(values, i, resolved[np.uintp(row), np.uintp(i)])
+        # A wavelength just below the upper end may be rounded up to it.
+        bin_index = min(int(lane(wavelengths, i) - first), last_bin)
+        values = with_lane(values, i, dense[row, np.uintp(bin_index)])
     return values
 
 
@@ -52,7 +54,7 @@ def ior_of_lane(spectra, row, wavelengths, index):
 def _read_ior(dense, spectra, row, wavelengths, index):
     if dense is None:
         return _read_resolved_ior(spectra.resolved, row, index)
-    return ior_at(spectra, row, np.float64(lane(wavelengths, index)))
+    return ior_at(dense, spectra.first, row, np.float64(lane(wavelengths, index)))
 
 
 @function
@@ -63,16 +65,14 @@ def _read_resolved_ior(resolved, row, index):
 
 
 @function
-def ior_at(spectra, row, wavelength):
+def ior_at(dense, first, row, wavelength):
     """Index of refraction at one wavelength (nm), linear between the centres of the 1 nm bins."""
-    dense = spectra.dense
-    position = min(max(wavelength - spectra.first - 0.5, 0.0), dense.shape[1] - 1.001)
+    if dense is None:
+        return 1.0
+    position = min(max(wavelength - first - 0.5, 0.0), dense.shape[1] - 1.001)
     bin_index = int(position)
     fraction = position - bin_index
-    return (
-        np.float64(dense[row, bin_index]) * (1.0 - fraction)
-        + np.float64(dense[row, bin_index + 1]) * fraction
-    )
+    return np.float64(dense[row, bin_index]) * (1.0 - fraction) + np.float64(dense[row, bin_index + 1]) * fraction
 
 
 @function

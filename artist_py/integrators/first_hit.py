@@ -79,7 +79,7 @@ def _add_albedo(scene, camera, sensing, stream, surface, origin, direction, row,
     if material.kind == ABSORBER:
         return
     wavelengths, weights = wavelengths_of_path(sensing, stream, WAVELENGTH)
-    path = start_path(scene.needs.dispersion, origin, direction, wavelengths, camera.media)
+    path = start_path(origin, direction, sensing, camera.media)
     vertex = vertex_at(scene, surface, path)
     outside = ior_around(scene.needs.media, scene, material, vertex.wo.z > 0.0, camera.media, wavelengths)
     albedo = reflectance_bsdf(scene.needs, material, scene.spectra, wavelengths, vertex.wo, outside)

@@ -77,7 +77,7 @@ def trace_pixel(scene, camera, pixel_filter, sensing, limits, work, x, y, image)
     lens_u, lens_v = lens_numbers(camera.lens, stream)
     origin, direction = camera_ray(camera, film_x, film_y, lens_u, lens_v)
     wavelengths, weights = wavelengths_of_path(sensing, stream, WAVELENGTH)
-    traced = path_radiance(scene, limits, stream, wavelengths, origin, direction, camera.media)
+    traced = path_radiance(scene, limits, sensing, stream, wavelengths, origin, direction, camera.media)
     row, column = y - work.crop[2], x - work.crop[0]
     store_sample(sensing, scene.spectra, image, row, column, traced.radiance * film_weight, wavelengths, weights)
     return traced
@@ -92,10 +92,10 @@ def lens_numbers(lens, stream):
 
 
 @function
-def path_radiance(scene, limits, stream, wavelengths, origin, direction, media):
+def path_radiance(scene, limits, sensing, stream, wavelengths, origin, direction, media):
     """`Traced` radiance along the ray, W m^-2 sr^-1 nm^-1 per wavelength, of up to `limits.max_length` edges."""
     radiance = black(wavelengths)
-    path = start_path(scene.needs.dispersion, origin, direction, wavelengths, media)
+    path = start_path(origin, direction, sensing, media)
     length, rays, shadow_rays = 1, 0, 0
     while True:
         rays += 1

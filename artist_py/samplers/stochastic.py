@@ -72,12 +72,13 @@ class StochasticSampler:
         """The scene's tables and the sensor at the wavelengths of `iteration`."""
         compiled = self.compiled
         render = compiled.graph.render
-        zero = Spectrum(np.zeros(render.hero_count))
+        zero, one = Spectrum(np.zeros(render.hero_count)), Spectrum(np.ones(render.hero_count))
+        ratio = one if compiled.scene.needs.dispersion else None
         if render.wavelengths != "shared":
-            return compiled.scene, Sensing(zero, compiled.nodes, None, bands)
+            return compiled.scene, Sensing(zero, ratio, compiled.nodes, None, bands)
         shared = shared_wavelengths(compiled.nodes, render.hero_count, render.seed, iteration)
         spectra = resolve_spectra(compiled.spectra, compiled.ior_rows, compiled.wavelength_range[0], shared[0])
-        return compiled.scene._replace(spectra=spectra), Sensing(zero, compiled.nodes, shared, bands)
+        return compiled.scene._replace(spectra=spectra), Sensing(zero, ratio, compiled.nodes, shared, bands)
 
     def add_to_film(self, iteration):
         """Add the image of the iteration to the film, in row order whatever the threads."""

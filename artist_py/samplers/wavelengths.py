@@ -2,11 +2,7 @@
 
 import numpy as np
 
-from ..core.vector import Spectrum
 from ..scene.tables import Spectra
-from ..transport.sensing import Sensing
-
-GOLDEN = 0.6180339887498949
 
 
 def van_der_corput(index):
@@ -39,7 +35,3 @@ def resolve_spectra(dense, ior_rows, first, wavelengths):
         values[ior_rows] = [np.interp(wavelengths, centres, dense[row]) for row in ior_rows]
     return Spectra(np.ascontiguousarray(values), None, float(first))
 
-
-def own_wavelengths(nodes, count, bands):
-    """`Sensing` for paths with wavelengths of their own."""
-    return Sensing(Spectrum(np.zeros(count)), nodes, None, bands)

@@ -70,20 +70,21 @@ def media_beyond(needed, material, is_entering, media):
 
 @function
 def ior_around(needed, scene, material, is_entering, media, wavelengths):
-    """Index of refraction on the outer side of a dielectric: a number, or one per wavelength where the scene disperses."""
+    """Index of refraction on the outer side of a dielectric, per wavelength."""
     if needed is None:
-        return 1.0
+        return splat(wavelengths, 1.0)
     if is_entering:
         around = filling_medium(media, scene.media)
     else:
         around = filling_medium(leave_medium(media, material.medium), scene.media)
-    return _ior_of_medium(scene.needs.dispersion, scene.spectra, scene.media[around], wavelengths)
+    medium = scene.media[around]
+    return _ior_of_medium(scene.needs.dispersion, scene.spectra, medium.eta, medium.ior, wavelengths)
 
 
 @function
-def _ior_of_medium(dispersion, spectra, medium, wavelengths):
+def _ior_of_medium(dispersion, spectra, row, ior, wavelengths):
     if dispersion is None:
-        return medium.ior
-    if medium.eta < 0:
-        return splat(wavelengths, medium.ior)
-    return ior_lanes(spectra, medium.eta, wavelengths)
+        return splat(wavelengths, ior)
+    if row < 0:
+        return splat(wavelengths, ior)
+    return ior_lanes(spectra, row, wavelengths)

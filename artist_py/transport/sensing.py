@@ -25,6 +25,7 @@ class Sensing(NamedTuple):
     """Wavelengths and sensor of one iteration; `shared` is absent where every path has wavelengths of its own."""
 
     zero: Spectrum  # zero at every wavelength of a path: says how many there are
+    ratio: Spectrum | None  # one at every wavelength, absent where no density depends on it: r of theory (2.6)
     nodes: np.ndarray  # float64 (n + 1,), see core/wavelengths.py
     shared: np.ndarray | None  # float64 (2, C): wavelengths in nm, and weights 1 / (C p) in nm
     bands: Bands | None

@@ -52,17 +52,9 @@ class Vertex(NamedTuple):
 
 
 @function
-def start_path(dispersion, origin, direction, wavelengths, media):
+def start_path(origin, direction, sensing, media):
     """A path that leaves the camera."""
-    one = splat(wavelengths, 1.0)
-    return Path(origin, direction, one, 0.0, origin, 1.0, _when(dispersion, one), media, False)
-
-
-@function
-def _when(needed, value):
-    if needed is None:
-        return None
-    return value
+    return Path(origin, direction, splat(sensing.zero, 1.0), 0.0, origin, 1.0, sensing.ratio, media, False)
 
 
 @function

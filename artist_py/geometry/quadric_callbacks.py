@@ -135,5 +135,5 @@ def _compiled_callbacks():
 
 
 def quadric_callbacks():
-    """Addresses of the callbacks (bounds, intersect, occluded); the first call compiles or loads them from the cache."""
+    """Addresses of the callbacks (bounds, intersect, occluded); the first call compiles them or loads the cache."""
     return tuple(each.address for each in _compiled_callbacks())

@@ -101,10 +101,10 @@ def extent_of(p, a, b):
 def _parallelogram_patch(needed, geometry, index, hit):
     if needed is None:
         return _no_patch()
-    corners = geometry.parallelograms[index]
-    p0 = load_vec3(geometry.vertices[corners[0]].position)
-    edge0 = load_vec3(geometry.vertices[corners[1]].position) - p0
-    edge1 = load_vec3(geometry.vertices[corners[3]].position) - p0
+    faces, vertices = geometry.parallelograms, geometry.vertices
+    p0 = load_vec3(vertices[faces[index, 0]].position)
+    edge0 = load_vec3(vertices[faces[index, 1]].position) - p0
+    edge1 = load_vec3(vertices[faces[index, 3]].position) - p0
     position = p0 + edge0 * hit.u + edge1 * hit.v
     normal = normalize(cross(edge0, edge1))
     return _Patch(position, normal, normal, hit.u, hit.v, extent_of(position, edge0, edge1))
@@ -114,39 +114,39 @@ def _parallelogram_patch(needed, geometry, index, hit):
 def _triangle_patch(needed, needs, geometry, index, is_smooth, hit):
     if needed is None:
         return _no_patch()
-    corners = geometry.triangles[index]
-    p0 = load_vec3(geometry.vertices[corners[0]].position)
-    edge1 = load_vec3(geometry.vertices[corners[1]].position) - p0
-    edge2 = load_vec3(geometry.vertices[corners[2]].position) - p0
+    faces, vertices = geometry.triangles, geometry.vertices
+    p0 = load_vec3(vertices[faces[index, 0]].position)
+    edge1 = load_vec3(vertices[faces[index, 1]].position) - p0
+    edge2 = load_vec3(vertices[faces[index, 2]].position) - p0
     position = p0 + edge1 * hit.u + edge2 * hit.v
     normal = normalize(cross(edge1, edge2))
     extent = extent_of(position, edge1, edge2)
-    u, v = _triangle_uv(needs.textures, geometry, corners, hit)
+    u, v = _triangle_uv(needs.textures, geometry, index, hit)
     patch = _Patch(position, normal, normal, u, v, extent)
-    return _smooth(needs.smooth_triangles, geometry, corners, is_smooth, hit, patch)
+    return _smooth(needs.smooth_triangles, geometry, index, is_smooth, hit, patch)
 
 
 @function
-def _triangle_uv(textures, geometry, corners, hit):
+def _triangle_uv(textures, geometry, index, hit):
     if textures is None:
         return hit.u, hit.v
-    a = geometry.vertices[corners[0]].uv
-    b = geometry.vertices[corners[1]].uv
-    c = geometry.vertices[corners[2]].uv
+    faces, vertices = geometry.triangles, geometry.vertices
+    a, b, c = vertices[faces[index, 0]].uv, vertices[faces[index, 1]].uv, vertices[faces[index, 2]].uv
     w = 1.0 - hit.u - hit.v
     return w * a[0] + hit.u * b[0] + hit.v * c[0], w * a[1] + hit.u * b[1] + hit.v * c[1]
 
 
 @function
-def _smooth(needed, geometry, corners, is_smooth, hit, patch):
+def _smooth(needed, geometry, index, is_smooth, hit, patch):
     """The interpolated normal; the geometric one is turned to its side, since the file's normals say what is outside."""
     if needed is None:
         return patch
     if not is_smooth:
         return patch
-    shading = load_vec3(geometry.vertices[corners[0]].normal) * (1.0 - hit.u - hit.v)
-    shading = shading + load_vec3(geometry.vertices[corners[1]].normal) * hit.u
-    shading = normalize(shading + load_vec3(geometry.vertices[corners[2]].normal) * hit.v)
+    faces, vertices = geometry.triangles, geometry.vertices
+    shading = load_vec3(vertices[faces[index, 0]].normal) * (1.0 - hit.u - hit.v)
+    shading = shading + load_vec3(vertices[faces[index, 1]].normal) * hit.u
+    shading = normalize(shading + load_vec3(vertices[faces[index, 2]].normal) * hit.v)
     side = dot(shading, patch.normal)
     if not abs(side) > 0.0:  # opposite vertex normals, or none
         return patch

@@ -9,6 +9,7 @@ from ..bsdf.dispatch import reflectance_bsdf
 from ..cameras.perspective import camera_ray, sample_film
 from ..core.atomic import fetch_and_add
 from ..core.rng import random_pair, stream_of
+from ..core.table import Table
 from ..core.vector import dot
 from ..geometry.embree import INVALID_ID, closest_hit
 from ..geometry.surface import surface_at
@@ -23,13 +24,13 @@ from .path_tracing import FILM, NEXT_TILE, STOP, WAVELENGTH, lens_numbers
 class FirstHits(NamedTuple):
     """Per pixel, float32; sums over samples, `coverage` counts those that hit something."""
 
-    normal: np.ndarray  # (h, w, 3) geometric, towards the camera
-    shading_normal: np.ndarray  # (h, w, 3)
-    position: np.ndarray  # (h, w, 3) render space
-    depth: np.ndarray  # (h, w, 1) distance along the optical axis, render space
-    albedo: np.ndarray  # (h, w, 3) linear RGB of the reflectance as a radiance
-    material: np.ndarray  # (h, w, 1) row of the material at the last sample, -1 for none
-    coverage: np.ndarray  # (h, w, 1)
+    normal: Table  # (h, w, 3) geometric, towards the camera
+    shading_normal: Table  # (h, w, 3)
+    position: Table  # (h, w, 3) render space
+    depth: Table  # (h, w, 1) distance along the optical axis, render space
+    albedo: Table  # (h, w, 3) linear RGB of the reflectance as a radiance
+    material: Table  # (h, w, 1) row of the material at the last sample, -1 for none
+    coverage: Table  # (h, w, 1)
 
 
 @kernel

@@ -9,6 +9,7 @@ from ..cameras.perspective import camera_ray, sample_film
 from ..core.atomic import fetch_and_add
 from ..core.rng import random_pair, stream_of
 from ..core.spectra import black
+from ..core.table import Table
 from ..core.vector import Spectrum
 from ..geometry.embree import INVALID_ID, closest_hit
 from ..geometry.surface import surface_at
@@ -45,7 +46,7 @@ class Pass(NamedTuple):
     stratified_pairs: int  # pairs of dimensions drawn from Sobol points
     crop: tuple  # (x0, x1, y0, y1) pixels, half open
     width: int  # of the full image: pixels keep their random numbers in every crop
-    progress: np.ndarray  # int64: next tile, stop flag, closest-hit rays, shadow rays
+    progress: Table  # int64: next tile, stop flag, closest-hit rays, shadow rays
 
 
 @kernel

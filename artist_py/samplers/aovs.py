@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..core.table import Table
 from ..integrators.first_hit import FirstHits, trace_first_hits
 from ..integrators.path_tracing import Pass
 
@@ -15,11 +16,12 @@ def render_aovs(compiled, sampler, settings, observer):
     height, width = sampler.film.height, sampler.film.width
     hits = FirstHits(*(np.zeros((height, width, n), np.float32) for n in (3, 3, 3, 1, 3, 1, 1)))
     hits.material[:] = -1.0
+    tables = FirstHits(*(Table(array) for array in hits))
     for sample in range(SAMPLES):
         progress = np.zeros(4, np.int64)
         scene, sensing = sampler.scene_and_sensing(sample, None)
-        work = Pass(sampler.seed + SEED_OFFSET, sample, sampler.stratified_pairs, sampler.crop, sampler.width, progress)
-        arguments = scene, compiled.camera, compiled.pixel_filter, sensing, work, hits
+        work = Pass(sampler.seed + SEED_OFFSET, sample, sampler.stratified_pairs, sampler.crop, sampler.width, Table(progress))
+        arguments = scene, compiled.camera, compiled.pixel_filter, sensing, work, tables
         if sample == 0:
             sampler.compile_calls([(trace_first_hits, arguments)], observer)
         sampler._run([(trace_first_hits, arguments)] * sampler.threads)

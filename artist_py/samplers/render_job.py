@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..core.table import Table
 from ..errors import OptionError
 from ..film.accumulation import Film
 from ..film.image import FilmImage
@@ -152,7 +153,7 @@ def memory_estimate(compiled, settings):
     pixels = (x1 - x0) * (y1 - y0)
     bands = len(band_edges(compiled)) - 1 if settings.spectral else 0
     geometry = compiled.scene.geometry
-    arrays = [array for array in geometry if isinstance(array, np.ndarray)]
+    arrays = [array for array in geometry if isinstance(array, Table)]
     emitters = compiled.scene.emitters
     faces = len(geometry.triangles) + len(geometry.parallelograms)
     return {

@@ -5,6 +5,7 @@ from concurrent.futures import ThreadPoolExecutor, wait
 
 import numpy as np
 
+from ..core.table import Table
 from ..core.vector import Spectrum
 from ..film.accumulation import REJECTED_KEPT, add_rows
 from ..integrators.path_tracing import RAYS, SHADOW_RAYS, STOP, Pass, trace_paths
@@ -47,7 +48,7 @@ class StochasticSampler:
             return None
         first, last = self.compiled.wavelength_range
         shape = (self.film.height, self.film.width, self.film.n_bands)
-        return Bands(np.zeros(shape, np.float32), float(first), (last - first) / self.film.n_bands)
+        return Bands(Table(np.zeros(shape, np.float32)), float(first), (last - first) / self.film.n_bands)
 
     # --- one iteration
 
@@ -65,8 +66,8 @@ class StochasticSampler:
     def _arguments(self, iteration, progress):
         compiled = self.compiled
         scene, sensing = self.scene_and_sensing(iteration, self.bands)
-        work = Pass(self.seed, iteration, self.stratified_pairs, self.crop, self.width, progress)
-        return scene, compiled.camera, compiled.pixel_filter, sensing, self.limits, work, self.image
+        work = Pass(self.seed, iteration, self.stratified_pairs, self.crop, self.width, Table(progress))
+        return scene, compiled.camera, compiled.pixel_filter, sensing, self.limits, work, Table(self.image)
 
     def scene_and_sensing(self, iteration, bands):
         """The scene's tables and the sensor at the wavelengths of `iteration`."""
@@ -75,10 +76,10 @@ class StochasticSampler:
         zero, one = Spectrum(np.zeros(render.hero_count)), Spectrum(np.ones(render.hero_count))
         ratio = one if compiled.scene.needs.dispersion else None
         if render.wavelengths != "shared":
-            return compiled.scene, Sensing(zero, ratio, compiled.nodes, None, bands)
+            return compiled.scene, Sensing(zero, ratio, Table(compiled.nodes), None, bands)
         shared = shared_wavelengths(compiled.nodes, render.hero_count, render.seed, iteration)
         spectra = resolve_spectra(compiled.spectra, compiled.ior_rows, compiled.wavelength_range[0], shared[0])
-        return compiled.scene._replace(spectra=spectra), Sensing(zero, ratio, compiled.nodes, shared, bands)
+        return compiled.scene._replace(spectra=spectra), Sensing(zero, ratio, Table(compiled.nodes), Table(shared), bands)
 
     def add_to_film(self, iteration):
         """Add the image of the iteration to the film, in row order whatever the threads."""
@@ -95,7 +96,7 @@ class StochasticSampler:
 
     def _rows(self, iteration, first, end, places):
         film = self.film
-        bands = None if self.bands is None else self.bands.image
+        bands = None if self.bands is None else self.bands.image.array
         is_odd = bool(iteration & 1)
         return (
             self.image, film.sums, film.odd_sums, film.squares, bands, film.band_sums, is_odd, first, end, places,

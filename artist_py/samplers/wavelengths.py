@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..core.table import Table
 from ..scene.tables import Spectra
 
 
@@ -33,5 +34,5 @@ def resolve_spectra(dense, ior_rows, first, wavelengths):
     if ior_rows:
         centres = first + 0.5 + np.arange(last + 1)
         values[ior_rows] = [np.interp(wavelengths, centres, dense[row]) for row in ior_rows]
-    return Spectra(np.ascontiguousarray(values), None, float(first))
+    return Spectra(Table(values), None, float(first))
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from artist_py.core.table import Table
 from artist_py.core.vector import vec3
 from artist_py.errors import Problem, SceneError
 from artist_py.film.color import flat_luminance, sensor_table
@@ -74,17 +75,17 @@ def compile_scene(graph, threads=None):
         tables.Geometry(
             embree.address,
             geometry.n_direct,
-            placements,
-            geometry.vertices,
-            geometry.triangles,
-            geometry.parallelograms,
-            geometry.quadrics if needs.quadrics or needs.quadric_emitters else None,
+            Table(placements),
+            Table(geometry.vertices),
+            Table(geometry.triangles),
+            Table(geometry.parallelograms),
+            Table(geometry.quadrics) if needs.quadrics or needs.quadric_emitters else None,
             geometry.instances(),
         ),
-        materials.table,
-        tables.Spectra(None, dense, float(first)),
+        Table(materials.table),
+        tables.Spectra(None, Table(dense), float(first)),
         emitter_table,
-        media,
+        Table(media) if media is not None else None,
         None,
         needs,
     )
@@ -149,7 +150,7 @@ def _needs(graph, geometry, materials, emitters, media):
     kinds = {placed.part.kind for placed in geometry.placed}
     used = set(materials.table["kind"]) - {tables.ABSORBER}
     present = {NEED_NAMES[kind] for kind in used}
-    present |= {EMITTER_NEEDS[kind] for kind in set(emitters.records["kind"])} if emitters else set()
+    present |= {EMITTER_NEEDS[kind] for kind in set(emitters.records.array["kind"])} if emitters else set()
     conditions = {
         "dispersion": bool(materials.table["is_dispersive"].any()),
         "media": media is not None,
@@ -169,7 +170,7 @@ def _with_camera_media(scene, camera, materials):
     """Scene and camera, where the camera may stand inside glass."""
     if scene.needs.dielectric is None:
         return scene, camera
-    media = materials.media_table()
+    media = Table(materials.media_table())
     inside = media_at(scene._replace(media=media), camera.position, vec3(*camera.forward.values))
     if inside:
         scene = scene._replace(media=media, needs=scene.needs._replace(media=True))

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from artist_py.core.table import Table
 from artist_py.core.vector import Vec3
 from artist_py.film.filters import filter_table
 from artist_py.scene import tables
@@ -52,8 +53,7 @@ def compile_camera(camera, film, space):
 def compile_filter(film):
     """`tables.Filter`; without weights where the filter has no negative lobes."""
     table = filter_table(film.filter, film.filter_radius)
-    weights = None if np.all(table.weight == 1.0) else np.ascontiguousarray(table.weight)
-    return tables.Filter(np.ascontiguousarray(table.offset), weights)
+    return tables.Filter(Table(table.offset), None if np.all(table.weight == 1.0) else Table(table.weight))
 
 
 def camera_matrices(camera, film):

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from artist_py.core.alias_table import build_alias_table
+from artist_py.core.table import Table
 from artist_py.errors import SceneError
 from artist_py.geometry.quadric_records import quadric_area, quadric_records
 from artist_py.scene import tables
@@ -128,7 +129,7 @@ class EmitterCompiler:
             return None
         records = np.concatenate(self.records)
         alias, records["pdf_select"] = build_alias_table(powers)
-        return tables.Emitters(records, alias if len(records) > 1 else None)
+        return tables.Emitters(Table(records), Table(alias) if len(records) > 1 else None)
 
 
 def _uniform_scale(linear):

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from artist_py.core.table import Table
 from artist_py.errors import SceneError
 from artist_py.geometry.embree import Device, EmbreeScene
 from artist_py.geometry.quadric_records import quadric_records
@@ -218,14 +219,14 @@ class GeometryCompiler:
         return rows
 
     def instances(self):
-        """Instance rows (instance_dtype), or `None`."""
+        """Instance rows (a `Table` of instance_dtype), or `None`."""
         if not self.instance_rows:
             return None
         rows = np.zeros(len(self.instance_rows), tables.instance_dtype)
         for row, (to_render, first_placement) in zip(rows, self.instance_rows, strict=True):
             row["object_to_world"], row["world_to_object"] = to_render[:3], np.linalg.inv(to_render)[:3]
             row["first_placement"] = first_placement
-        return rows
+        return Table(rows)
 
     def bounds(self, placed):
         """Bounding box (2, 3) of a placed shape in render space."""

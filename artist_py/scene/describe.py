@@ -47,13 +47,12 @@ def describe(compiled, memory):
 
 def _geometry(compiled):
     geometry, space = compiled.scene.geometry, compiled.space
-    kinds = geometry.placements["kind"]
     counts = {
         "triangles": len(geometry.triangles),
         "parallelograms": len(geometry.parallelograms),
         "exact shapes": 0 if geometry.quadrics is None else len(geometry.quadrics),
         "instances": 0 if geometry.instances is None else len(geometry.instances),
-        "placed shapes": len(kinds),
+        "placed shapes": len(geometry.placements),
     }
     rows = [(name, f"{count:,}") for name, count in counts.items() if count]
     centre = ", ".join(f"{x:.6g}" for x in space.centre)
@@ -65,7 +64,7 @@ def _lights(compiled):
     emitters = compiled.scene.emitters
     if emitters is None:
         return [("emitters", "none: the image will be black")]
-    records = emitters.records
+    records = emitters.records.array
     names = ("triangles", "parallelograms", "spheres", "other exact shapes")
     rows = [(name, f"{np.sum(records['kind'] == kind):,}") for kind, name in enumerate(names)]
     rows = [row for row in rows if row[1] != "0"]
@@ -76,7 +75,7 @@ def _lights(compiled):
 
 def _materials(compiled):
     words = {kind: cls.__name__ for cls, kind in KINDS.items()}
-    used = compiled.scene.materials["kind"][1:]
+    used = compiled.scene.materials.array["kind"][1:]
     counts = [(words[kind], int(np.sum(used == kind))) for kind in sorted(set(used.tolist()))]
     unused = len(compiled.graph.materials) - len(used)
     rows = [(name, str(count)) for name, count in counts]

@@ -9,6 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..core.table import Table
+
 # Placement kinds: how a hit's position and normal are found from Embree's primitive.
 TRIANGLES, SMOOTH_TRIANGLES, PARALLELOGRAMS, QUADRICS = range(4)
 
@@ -108,27 +110,27 @@ class Geometry(NamedTuple):
 
     embree: int
     first_instance: int  # geometry ID of instance 0 in the top scene
-    placements: np.ndarray  # placement_dtype
-    vertices: np.ndarray  # vertex_dtype, shared with Embree
-    triangles: np.ndarray  # uint32 (n, 3) into vertices, shared with Embree
-    parallelograms: np.ndarray  # uint32 (n, 4) into vertices, corner, +edge0, +edge0+edge1, +edge1
-    quadrics: np.ndarray | None  # quadric_dtype
-    instances: np.ndarray | None  # instance_dtype
+    placements: Table  # placement_dtype
+    vertices: Table  # vertex_dtype, shared with Embree
+    triangles: Table  # uint32 (n, 3) into vertices, shared with Embree
+    parallelograms: Table  # uint32 (n, 4) into vertices, corner, +edge0, +edge0+edge1, +edge1
+    quadrics: Table | None  # quadric_dtype
+    instances: Table | None  # instance_dtype
 
 
 class Spectra(NamedTuple):
     """All spectra of the scene, one row each; exactly one of `resolved` and `dense` is present."""
 
-    resolved: np.ndarray | None  # float32 (rows, C): at this iteration's shared wavelengths
-    dense: np.ndarray | None  # float32 (rows, bins): averages over 1 nm bins
+    resolved: Table | None  # float32 (rows, C): at this iteration's shared wavelengths
+    dense: Table | None  # float32 (rows, bins): averages over 1 nm bins
     first: float  # nm, lower edge of bin 0
 
 
 class Emitters(NamedTuple):
     """What emits; `alias` is absent when there is one emitter only."""
 
-    records: np.ndarray  # emitter_dtype
-    alias: np.ndarray | None  # alias_dtype
+    records: Table  # emitter_dtype
+    alias: Table | None  # alias_dtype
 
 
 class Needs(NamedTuple):
@@ -169,8 +171,8 @@ class Lens(NamedTuple):
 class Filter(NamedTuple):
     """Reconstruction filter as one inverse distribution per axis; see film/filters.py."""
 
-    offsets: np.ndarray  # float64 (n + 1,), pixels from the pixel centre
-    weights: np.ndarray | None  # float64 (n,); absent where the filter is its own density
+    offsets: Table  # float64 (n + 1,), pixels from the pixel centre
+    weights: Table | None  # float64 (n,); absent where the filter is its own density
 
 
 class Camera(NamedTuple):
@@ -190,18 +192,10 @@ class Scene(NamedTuple):
     """Everything a kernel may read."""
 
     geometry: Geometry
-    materials: np.ndarray  # material_dtype
+    materials: Table  # material_dtype
     spectra: Spectra
     emitters: Emitters | None
-    media: np.ndarray | None  # medium_dtype; absent where no dielectric touches another
+    media: Table | None  # medium_dtype; absent where no dielectric touches another
     textures: object | None
     needs: Needs
 
-
-def as_records(table):
-    """The table with its record arrays as `np.recarray`, so that plain Python reads fields as kernels do."""
-    if isinstance(table, np.ndarray) and table.dtype.names:
-        return table.view(np.recarray)
-    if isinstance(table, tuple) and hasattr(table, "_fields"):
-        return type(table)(*(as_records(field) for field in table))
-    return table

@@ -5,7 +5,7 @@ import math
 from ..core.vector import dot
 from ..geometry.embree import INVALID_ID, closest_hit
 from ..geometry.surface import leave_surface, surface_at
-from ..scene.tables import DIELECTRIC, as_records
+from ..scene.tables import DIELECTRIC
 from .media import enter_medium
 
 MAX_CROSSINGS = 10_000
@@ -13,7 +13,6 @@ MAX_CROSSINGS = 10_000
 
 def media_at(scene, origin, direction):
     """State of media.py at `origin`: of the dielectrics that a ray leaves without having entered, the first is innermost."""
-    scene = as_records(scene)
     entered, left = [], []
     for _ in range(MAX_CROSSINGS):
         hit = closest_hit(scene.geometry.embree, origin, direction, math.inf)

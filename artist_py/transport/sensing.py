@@ -2,10 +2,9 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
 from ..core.rng import random_pair
 from ..core.spectra import spectrum_at
+from ..core.table import Table
 from ..core.vector import Spectrum, lane, lane_count, lane_sum, with_lane
 from ..core.wavelengths import sample_wavelengths
 from ..jit import function
@@ -16,7 +15,7 @@ RED, GREEN, BLUE = 0, 1, 2  # rows of the scene's spectra: the sensor, linear sR
 class Bands(NamedTuple):
     """A spectral image of one iteration."""
 
-    image: np.ndarray  # float32 (h, w, n), radiance averaged over each band, W m^-2 sr^-1 nm^-1
+    image: Table  # float32 (h, w, n), radiance averaged over each band, W m^-2 sr^-1 nm^-1
     first: float  # nm, lower edge of band 0
     width: float  # nm
 
@@ -26,8 +25,8 @@ class Sensing(NamedTuple):
 
     zero: Spectrum  # zero at every wavelength of a path: says how many there are
     ratio: Spectrum | None  # one at every wavelength, absent where no density depends on it: r of theory (2.6)
-    nodes: np.ndarray  # float64 (n + 1,), see core/wavelengths.py
-    shared: np.ndarray | None  # float64 (2, C): wavelengths in nm, and weights 1 / (C p) in nm
+    nodes: Table  # float64 (n + 1,), see core/wavelengths.py
+    shared: Table | None  # float64 (2, C): wavelengths in nm, and weights 1 / (C p) in nm
     bands: Bands | None
 
 

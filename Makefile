@@ -26,7 +26,7 @@ slow: setup
 	$(RUN)/python -m pytest -m slow
 
 coverage: setup
-	NUMBA_DISABLE_JIT=1 $(RUN)/coverage run -m pytest -m "not slow"
+	$(RUN)/coverage run -m pytest -m "not slow"
 	$(RUN)/coverage report --skip-covered
 
 warm: setup

@@ -7,8 +7,15 @@ from contextlib import contextmanager, suppress
 
 INTERRUPTED = 130  # exit code
 CLEANUP_SECONDS = 0.3
+SHOW_CURSOR = b"\x1b[?25h"
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 MESSAGE = b"\ninterrupted: ending the render and writing what there is; once more to quit at once\n"
+
+
+def _quit():
+    if os.isatty(2):
+        os.write(2, SHOW_CURSOR)  # the bar has hidden it
+    os._exit(INTERRUPTED)
 
 
 @contextmanager
@@ -21,7 +28,7 @@ def stop_signals():
 
     def handle(_number, _frame):
         if stop.is_set():
-            end = threading.Timer(CLEANUP_SECONDS, os._exit, [INTERRUPTED])
+            end = threading.Timer(CLEANUP_SECONDS, _quit)
             end.daemon = True
             end.start()
             raise KeyboardInterrupt

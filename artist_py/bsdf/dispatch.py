@@ -9,7 +9,7 @@ not two-sided.
 from ..core.spectra import black
 from ..core.vector import vec3
 from ..jit import function
-from ..scene.tables import DIELECTRIC, DIFFUSE, MIRROR, OREN_NAYAR, THIN_DIELECTRIC
+from ..scene.tables import CONDUCTOR, DIELECTRIC, DIFFUSE, MIRROR, OREN_NAYAR, PASS_THROUGH, THIN_DIELECTRIC
 from .conductor import reflectance_conductor, sample_conductor
 from .dielectric import reflectance_dielectric, sample_dielectric
 from .diffuse import evaluate_diffuse, pdf_diffuse, reflectance_diffuse, sample_diffuse
@@ -64,9 +64,11 @@ def _sample_reflective(needs, material, spectra, wavelengths, wo, u, v, w, ratio
         return sample_mirror(
             needs.mirror, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
         )
-    return sample_conductor(
-        needs.conductor, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
-    )
+    if kind == CONDUCTOR:
+        return sample_conductor(
+            needs.conductor, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+        )
+    return absorption(wo, wavelengths, ratio)
 
 
 @function
@@ -80,9 +82,11 @@ def _sample_transmissive(needs, material, spectra, wavelengths, wo, u, v, w, rat
         return sample_thin_dielectric(
             needs.thin_dielectric, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
         )
-    return sample_pass_through(
-        needs.pass_through, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
-    )
+    if kind == PASS_THROUGH:
+        return sample_pass_through(
+            needs.pass_through, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+        )
+    return absorption(wo, wavelengths, ratio)
 
 
 @function
@@ -134,7 +138,9 @@ def _reflective_reflectance(needs, material, spectra, wavelengths, wo, ior_outsi
         return reflectance_oren_nayar(needs.oren_nayar, material, spectra, wavelengths, wo, ior_outside)
     if kind == MIRROR:
         return reflectance_mirror(needs.mirror, material, spectra, wavelengths, wo, ior_outside)
-    return reflectance_conductor(needs.conductor, material, spectra, wavelengths, wo, ior_outside)
+    if kind == CONDUCTOR:
+        return reflectance_conductor(needs.conductor, material, spectra, wavelengths, wo, ior_outside)
+    return black(wavelengths)
 
 
 @function
@@ -146,7 +152,9 @@ def _transmissive_reflectance(needs, material, spectra, wavelengths, wo, ior_out
         return reflectance_thin_dielectric(
             needs.thin_dielectric, material, spectra, wavelengths, wo, ior_outside
         )
-    return reflectance_pass_through(needs.pass_through, material, spectra, wavelengths, wo, ior_outside)
+    if kind == PASS_THROUGH:
+        return reflectance_pass_through(needs.pass_through, material, spectra, wavelengths, wo, ior_outside)
+    return black(wavelengths)
 
 
 @function
@@ -157,8 +165,8 @@ def is_delta_bsdf(material):
 
 @function
 def is_transmissive(material):
-    """Whether light can go through; the kinds are numbered so that these come last."""
-    return material.kind >= DIELECTRIC
+    """Whether light can go through; the kinds are numbered so that these stand together."""
+    return DIELECTRIC <= material.kind <= PASS_THROUGH
 
 
 @function

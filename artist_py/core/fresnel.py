@@ -75,21 +75,26 @@ def slab_reflectance(reflectance):
 def fresnel_conductor(cos_theta_i, eta, absorption):
     """Reflectance spectrum of a metal of the relative index `eta` + i `absorption`, for the cosine `cos_theta_i` > 0.
 
-    a + i b is the square root of (eta + i absorption)^2 - sin^2. a^2 is half of |.| + t0, which for metals
-    would be a small difference of large numbers; where t0 < 0 it is therefore taken as 2 (eta absorption)^2 /
-    (|.| - t0).
+    a + i b is the square root of (eta + i absorption)^2 - sin^2. Half of |.| +- t0 is a^2 or b^2, but the lesser of the
+    two would be a small difference of large numbers: it is taken from their product, and t0 separates them.
     Born and Wolf 1999, Principles of Optics, section 14.2.
     """
     cos_squared = cos_theta_i * cos_theta_i
     sin_squared = max(0.0, 1.0 - cos_squared)
-    product = eta * absorption
+    zero = splat(eta, 0.0)
     t0 = (eta - absorption) * (eta + absorption) - sin_squared
-    t0_positive = maximum(t0, splat(t0, 0.0))
-    t0_size = t0_positive * 2.0 - t0
-    size = square_root(t0 * t0 + 4.0 * product * product)
-    a_squared = t0_positive + 2.0 * product * product / (size + t0_size + TINY)
-    two_a_cos = 2.0 * cos_theta_i * square_root(a_squared)
-    r_s = (size + cos_squared - two_a_cos) / (size + cos_squared + two_a_cos + TINY)
-    p_even = cos_squared * size + sin_squared * sin_squared
-    p_odd = two_a_cos * sin_squared
-    return 0.5 * r_s * (1.0 + (p_even - p_odd) / (p_even + p_odd + TINY))
+    t0_size = maximum(t0, -t0)
+    product = eta * absorption
+    product = product * product
+    lesser = 2.0 * product / (square_root(t0 * t0 + 4.0 * product) + t0_size + TINY)
+    b_squared = lesser + maximum(-t0, zero)
+    a = square_root(lesser + maximum(t0, zero))
+    r_s = _ratio(a, cos_theta_i, b_squared)
+    return 0.5 * r_s * (1.0 + _ratio(a * cos_theta_i, sin_squared, b_squared * cos_squared))
+
+
+@function
+def _ratio(a, c, b_squared):
+    """|a + i b - c|^2 / |a + i b + c|^2."""
+    difference, total = a - c, a + c
+    return (difference * difference + b_squared + TINY) / (total * total + b_squared + TINY)

@@ -86,7 +86,7 @@ numba.config.CACHE_DIR = str(CACHE)
 FASTMATH = {"nsz", "arcp", "contract", "afn", "reassoc"}
 
 kernel = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=FASTMATH)
-function = register_jitable(error_model="numpy", fastmath=FASTMATH, no_cfunc_wrapper=True)
+function = register_jitable(error_model="numpy", fastmath=FASTMATH, no_cfunc_wrapper=True, forceinline=True)
 
 
 def callback(signature):

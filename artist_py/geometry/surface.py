@@ -90,24 +90,25 @@ def _no_patch():
 
 
 @function
+def largest(v):
+    """Size of the largest coordinate."""
+    return max(max(abs(v.x), abs(v.y)), abs(v.z))
+
+
+@function
 def extent_of(p, a, b):
     """Largest coordinate plus the size of the edges: what float32 rounding is relative to."""
-    size = max(max(abs(p.x), abs(p.y)), abs(p.z))
-    size += max(max(abs(a.x), abs(a.y)), abs(a.z))
-    return size + max(max(abs(b.x), abs(b.y)), abs(b.z))
+    return largest(p) + largest(a) + largest(b)
 
 
 @function
 def _parallelogram_patch(needed, geometry, index, hit):
     if needed is None:
         return _no_patch()
-    faces, vertices = geometry.parallelograms, geometry.vertices
-    p0 = load_vec3(vertices[faces[index, 0]].position)
-    edge0 = load_vec3(vertices[faces[index, 1]].position) - p0
-    edge1 = load_vec3(vertices[faces[index, 3]].position) - p0
-    position = p0 + edge0 * hit.u + edge1 * hit.v
-    normal = normalize(cross(edge0, edge1))
-    return _Patch(position, normal, normal, hit.u, hit.v, extent_of(position, edge0, edge1))
+    face = geometry.parallelograms[index]
+    position = load_vec3(face.corner) + load_vec3(face.edge0) * hit.u + load_vec3(face.edge1) * hit.v
+    normal = load_vec3(face.normal)
+    return _Patch(position, normal, normal, hit.u, hit.v, largest(position) + face.extent)
 
 
 @function

@@ -93,6 +93,28 @@ def lens_numbers(lens, stream):
 
 
 @function
+def choice_numbers(scene, stream, pair):
+    """Numbers for the choice of an emitter and of a lobe; none are drawn where there is nothing to choose."""
+    return _choice_numbers(scene.emitters, scene.needs, stream, pair)
+
+
+@function
+def _choice_numbers(emitters, needs, stream, pair):
+    if emitters is None:
+        return _numbers_if(None, needs.dielectric, needs.thin_dielectric, stream, pair)
+    return _numbers_if(emitters.alias, needs.dielectric, needs.thin_dielectric, stream, pair)
+
+
+@function
+def _numbers_if(alias, dielectric, thin_dielectric, stream, pair):
+    if alias is None:
+        if dielectric is None:
+            if thin_dielectric is None:
+                return 0.0, 0.0
+    return random_pair(stream, pair)
+
+
+@function
 def path_radiance(scene, limits, sensing, stream, wavelengths, origin, direction, media):
     """`Traced` radiance along the ray, W m^-2 sr^-1 nm^-1 per wavelength, of up to `limits.max_length` edges."""
     radiance = black(wavelengths)
@@ -113,7 +135,7 @@ def path_radiance(scene, limits, sensing, stream, wavelengths, origin, direction
             break
         pair = FIRST_VERTEX + (length - 1) * PAIRS_PER_VERTEX
         vertex = vertex_at(scene, surface, path)
-        u_select, u_lobe = random_pair(stream, pair + CHOICE)
+        u_select, u_lobe = choice_numbers(scene, stream, pair + CHOICE)
         if not is_delta_bsdf(material):
             direct = connect_to_emitter(scene, vertex, wavelengths, stream, pair + EMITTER, u_select)
             radiance = radiance + path.throughput * direct.radiance

@@ -78,7 +78,7 @@ def compile_scene(graph, threads=None):
             Table(placements),
             Table(geometry.vertices),
             Table(geometry.triangles),
-            Table(geometry.parallelograms),
+            Table(geometry.parallelogram_records()),
             Table(geometry.quadrics) if needs.quadrics or needs.quadric_emitters else None,
             geometry.instances(),
         ),

@@ -218,6 +218,17 @@ class GeometryCompiler:
             row["flip"] = -1.0 if flip else 1.0
         return rows
 
+    def parallelogram_records(self):
+        """Parallelogram rows (parallelogram_dtype)."""
+        rows = np.zeros(len(self.parallelograms), tables.parallelogram_dtype)
+        corners = self.vertices["position"].astype(float)[self.parallelograms]
+        rows["corner"] = corners[:, 0]
+        rows["edge0"], rows["edge1"] = corners[:, 1] - corners[:, 0], corners[:, 3] - corners[:, 0]
+        normal = np.cross(rows["edge0"], rows["edge1"])
+        rows["normal"] = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+        rows["extent"] = np.abs(rows["edge0"]).max(axis=1) + np.abs(rows["edge1"]).max(axis=1)
+        return rows
+
     def instances(self):
         """Instance rows (a `Table` of instance_dtype), or `None`."""
         if not self.instance_rows:

@@ -27,6 +27,18 @@ NO_EMITTER = -1
 
 vertex_dtype = np.dtype([("position", "f4", 3), ("normal", "f4", 3), ("uv", "f4", 2)], align=True)
 
+# One row per parallelogram, from the float32 corners that Embree has.
+parallelogram_dtype = np.dtype(
+    [
+        ("corner", "f8", 3),
+        ("edge0", "f8", 3),
+        ("edge1", "f8", 3),
+        ("normal", "f8", 3),  # unit, edge0 x edge1
+        ("extent", "f8"),  # of the edges, see geometry/surface.py
+    ],
+    align=True,
+)
+
 quadric_dtype = np.dtype(
     [
         ("object_to_world", "f8", (3, 4)),  # canonical frame to render space (or to the instanced object's frame)
@@ -113,7 +125,7 @@ class Geometry(NamedTuple):
     placements: Table  # placement_dtype
     vertices: Table  # vertex_dtype, shared with Embree
     triangles: Table  # uint32 (n, 3) into vertices, shared with Embree
-    parallelograms: Table  # uint32 (n, 4) into vertices, corner, +edge0, +edge0+edge1, +edge1
+    parallelograms: Table  # parallelogram_dtype
     quadrics: Table | None  # quadric_dtype
     instances: Table | None  # instance_dtype
 

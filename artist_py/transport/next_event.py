@@ -54,7 +54,8 @@ def _connect(emitters, scene, vertex, wavelengths, stream, pair, u_select):
         return Connection(black(wavelengths), 1)
     f = evaluate_bsdf(scene.needs, material, scene.spectra, wavelengths, vertex.wo, wi)
     pdf_light = point.pdf_solid_angle * emitter.pdf_select
-    weight = balance(pdf_light, pdf_scatter) * abs(wi.z) / pdf_light
+    # The balance heuristic over the density: w / p = 1 / (p + p').
+    weight = abs(wi.z) / (pdf_light + pdf_scatter)
     return Connection(emitted_radiance(scene.spectra, emitter, wavelengths) * f * weight, 1)
 
 

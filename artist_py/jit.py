@@ -85,8 +85,10 @@ numba.config.CACHE_DIR = str(CACHE)
 # No nnan and no ninf: isfinite must keep its meaning.
 FASTMATH = {"nsz", "arcp", "contract", "afn", "reassoc"}
 
-kernel = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=FASTMATH)
-function = register_jitable(error_model="numpy", fastmath=FASTMATH, no_cfunc_wrapper=True, forceinline=True)
+# Without numba's run time (_nrt) nothing in a kernel can allocate or count references: it would not compile.
+# Inlining everything saves the scene's many words at every call, 30 % of the kernels' time, and compiles no slower.
+kernel = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=FASTMATH, _nrt=False)
+function = register_jitable(error_model="numpy", fastmath=FASTMATH, no_cfunc_wrapper=True, forceinline=True, _nrt=False)
 
 
 def callback(signature):

@@ -10,19 +10,15 @@ INV_PI = 1.0 / math.pi
 
 @function
 def cos_sin_octant(x):
-    """`(cos x, sin x)` for |x| <= pi / 4, to 2e-15: Taylor's series, with no branch and no call."""
+    """`(cos x, sin x)` for |x| <= pi / 4, to 1e-11: Taylor's series, with no branch and no call."""
     y = x * x
-    cosine = 1.0 / 20922789888000.0
-    cosine = cosine * y - 1.0 / 87178291200.0
-    cosine = cosine * y + 1.0 / 479001600.0
+    cosine = 1.0 / 479001600.0
     cosine = cosine * y - 1.0 / 3628800.0
     cosine = cosine * y + 1.0 / 40320.0
     cosine = cosine * y - 1.0 / 720.0
     cosine = cosine * y + 1.0 / 24.0
     cosine = cosine * y - 0.5
-    sine = -1.0 / 1307674368000.0
-    sine = sine * y + 1.0 / 6227020800.0
-    sine = sine * y - 1.0 / 39916800.0
+    sine = -1.0 / 39916800.0
     sine = sine * y + 1.0 / 362880.0
     sine = sine * y - 1.0 / 5040.0
     sine = sine * y + 1.0 / 120.0

@@ -13,13 +13,17 @@ from .area import no_emitter_point, solid_angle_density
 from .types import EmitterPoint
 
 
+# A reference this near to the sphere lies on it, within rounding, and must not be taken for outside.
+ON_SPHERE = 1.0 - 1e-9
+
+
 @function
 def _cone_of_sphere(emitter, reference):
     """`(axis to the centre, distance squared, 1 - cos of the half angle)`; the last is 0 from inside."""
     axis = load_vec3(emitter.origin) - reference
     distance_squared = dot(axis, axis)
     sin_squared = emitter.radius * emitter.radius / distance_squared
-    if not sin_squared < 1.0:
+    if not sin_squared < ON_SPHERE:
         return axis, distance_squared, 0.0
     return axis, distance_squared, sin_squared / (1.0 + math.sqrt(1.0 - sin_squared))
 

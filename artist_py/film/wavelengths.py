@@ -55,8 +55,8 @@ def inverse_cdf(density, first_nm, n_entries=1024):
     cdf = np.interp(cdf, cdf[fixed], snapped)
     edges = first_nm + np.arange(len(cdf), dtype=np.float64)
     # Kernels round wavelengths to float32. One drawn in the dark just below a line must not round into the
-    # line, where its small density would make it a firefly; nor may the last one round out of the tables.
-    upwards = np.append(1 + np.flatnonzero(rise > STEP), len(density))
+    # line, where its small density would make it a firefly. One that rounds to the end is read in the last bin.
+    upwards = 1 + np.flatnonzero(rise > STEP)
     edges[upwards] = np.nextafter(edges[upwards].astype(np.float32), np.float32(0))
     return np.interp(np.arange(n_entries + 1) / n_entries, cdf, edges)
 

@@ -121,7 +121,7 @@ class Device:
             raise EmbreeError(f"{what}: Embree: {ERROR_NAMES.get(code, code)}")
 
     def __del__(self):
-        if getattr(self, "handle", None):
+        if getattr(self, "handle", None) and rtc is not None:  # None when the interpreter is shutting down
             rtc.rtcReleaseDevice(self.handle)
 
 
@@ -184,7 +184,7 @@ class EmbreeScene:
         return self
 
     def __del__(self):
-        if getattr(self, "address", None):
+        if getattr(self, "address", None) and rtc is not None:
             rtc.rtcReleaseScene(self.address)
 
 

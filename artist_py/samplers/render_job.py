@@ -202,6 +202,7 @@ def film_image(compiled, settings, film, aovs):
         band_centres=0.5 * (edges[1:] + edges[:-1]) if settings.spectral else None,
         aovs={name: values for name, values in aovs.items() if name != "variance"},
         rejected=tuple(film.rejected),
+        rejected_count=film.rejected_count,
         world_to_camera=compiled.matrices[0],
         world_to_ndc=compiled.matrices[1],
     )

@@ -10,7 +10,7 @@ from artist_py.film.filters import filter_table
 from artist_py.scene import tables
 from artist_py.scene.graph import ThinLens
 
-FAR = 2.0  # radii: cameras farther from the centre start their rays on the bounding sphere
+FAR = 16.0  # radii: cameras farther from the centre start their rays on the bounding sphere
 
 
 def camera_axes(camera):

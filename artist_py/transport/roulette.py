@@ -7,9 +7,6 @@ from ..core.vector import lane_max
 from ..jit import function
 from .subpath import with_throughput
 
-SURVIVAL_LIMIT = 0.95
-
-
 class Limits(NamedTuple):
     """How long paths may get, in edges."""
 
@@ -22,11 +19,12 @@ def survival_probability(limits, length, path):
     """Probability that `path`, about to get its edge number `length`, goes on.
 
     It depends on the throughput and so stays out of all MIS weights (theory 1.8). The n^2 that refraction has put into
-    the throughput is taken out again, since it will leave with the medium.
+    the throughput is taken out again, since it will leave with the medium. Survival may be certain: a limit below the
+    albedo would make the weights of long paths grow without bound, and lossless paths end at the maximal length.
     """
     if length <= limits.roulette_length:
         return 1.0
-    return min(SURVIVAL_LIMIT, lane_max(path.throughput) * path.radiance_scale)
+    return min(1.0, lane_max(path.throughput) * path.radiance_scale)
 
 
 @function

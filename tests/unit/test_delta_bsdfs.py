@@ -209,8 +209,8 @@ class TestDispersion:
         np.testing.assert_allclose(refracted.weight.max(1), LANES / ior**2, rtol=1e-6)
 
     def test_densities_are_lane_means_and_reversible(self):
-        wo = direction(60.0)
-        samples = sampled(materials(DIELECTRIC, is_dispersive=1), wo, strata(1000))
+        wo, start = direction(60.0), Spectrum([0.1, 2.9, 0.3, 0.7])
+        samples = sampled(materials(DIELECTRIC, is_dispersive=1), wo, strata(1000), ratio=start)
         reflectances = self.lane_reflectances(wo, np.ones(LANES))
         reflected = samples.wi[:, 2] > 0.0
         lanes = samples.weight.argmax(1)
@@ -230,6 +230,15 @@ class TestDispersion:
         samples = sampled(materials(DIELECTRIC), direction(60.0), strata(100), ratio=start)
         np.testing.assert_array_equal(samples.ratio, np.tile(start.values, (100, 1)))
         assert np.all(samples.weight > 0.0)
+
+    def test_clear_glass_in_a_dispersive_liquid_disperses(self):
+        wo, liquid = direction(60.0), np.array([1.345, 1.34, 1.335, 1.33])
+        samples = sampled(materials(DIELECTRIC), wo, strata(1000), ior_outside=Spectrum(liquid))
+        refracted = samples[samples.wi[:, 2] < 0.0]
+        lanes = refracted.weight.argmax(1)
+        assert set(lanes) == set(range(LANES))
+        assert np.all(np.count_nonzero(refracted.weight, axis=1) == 1)
+        np.testing.assert_allclose(refracted.wi[:, 0] * 1.5 / liquid[lanes], -wo.x, rtol=1e-6)
 
     def test_dispersive_thin_sheets_keep_all_lanes(self):
         start = Spectrum([0.1, 2.9, 0.3, 0.7])

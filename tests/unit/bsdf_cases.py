@@ -2,6 +2,7 @@
 
 import math
 
+import numba
 import numpy as np
 
 from artist_py.bsdf.dispatch import (
@@ -52,7 +53,11 @@ RESOLVED = np.array(
 SPECTRA = Spectra(Table(RESOLVED), None, 0.0)
 DELTA = (MIRROR, CONDUCTOR, DIELECTRIC, THIN_DIELECTRIC, PASS_THROUGH)
 REFLECTIVE = (DIFFUSE, OREN_NAYAR, MIRROR, CONDUCTOR)
-ALBEDO_BINS = 96
+# Plain Python, which measures coverage, cannot afford as many.
+STRATA = 1_000 if numba.config.DISABLE_JIT else 100_000
+ALBEDO_BINS = 12 if numba.config.DISABLE_JIT else 96
+# Of integrals over directions: the kink of Fujii's form at s = 0 limits the rule at grazing angles.
+ALBEDO_TOLERANCE = 0.05 / ALBEDO_BINS
 
 
 def materials(kind, reflectance=COLOUR, *, roughness=30.0, ior=1.5, is_dispersive=0, two_sided=1):
@@ -149,7 +154,7 @@ def sampled(table, wo, numbers, *, ratio=None, ior_outside=1.0, light_walk=None)
     return out
 
 
-def strata(count):
+def strata(count=STRATA):
     """Numbers whose third column visits the middles of `count` equal parts of [0, 1)."""
     numbers = np.full((count, 3), 0.5)
     numbers[:, 2] = (np.arange(count) + 0.5) / count

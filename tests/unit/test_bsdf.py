@@ -5,11 +5,13 @@ import math
 import numpy as np
 import pytest
 from bsdf_cases import (
+    ALBEDO_TOLERANCE,
     ALL,
     COLOUR,
     REFLECTIVE,
     RESOLVED,
     SPECTRA,
+    STRATA,
     WAVELENGTHS,
     WHITE,
     albedo,
@@ -49,8 +51,7 @@ class TestDiffuseKinds:
     @pytest.mark.parametrize("degrees", [0.0, 40.0, 75.0, 88.0, 110.0, 180.0])
     def test_white_surfaces_in_a_white_furnace_vanish(self, kind, roughness, degrees):
         total = albedo(materials(kind, WHITE, roughness=roughness), direction(degrees))
-        # The kink of Fujii's form at s = 0 limits the rule to about 3e-4 at grazing angles.
-        np.testing.assert_allclose(total, 1.0, atol=5e-4)
+        np.testing.assert_allclose(total, 1.0, atol=ALBEDO_TOLERANCE)
 
     @pytest.mark.parametrize(("kind", "roughness"), ROUGH)
     @pytest.mark.parametrize("degrees", [0.0, 60.0, 88.0, 120.0])
@@ -58,7 +59,7 @@ class TestDiffuseKinds:
         table, wo = materials(kind, roughness=roughness), direction(degrees)
         expected = reflectance_bsdf(ALL, table[0], SPECTRA, WAVELENGTHS, wo, 1.0).values
         assert np.all(expected <= RESOLVED[COLOUR] + 1e-6)
-        np.testing.assert_allclose(albedo(table, wo), expected, atol=5e-4)
+        np.testing.assert_allclose(albedo(table, wo), expected, atol=ALBEDO_TOLERANCE)
 
     @pytest.mark.parametrize(("kind", "roughness"), ROUGH)
     def test_is_reciprocal(self, kind, roughness):
@@ -105,7 +106,7 @@ class TestDiffuseKinds:
         samples = sampled(
             materials(OREN_NAYAR, WHITE, roughness=90.0),
             direction(89.99),
-            np.random.default_rng(3).random((20_000, 3)),
+            np.random.default_rng(3).random((STRATA // 5, 3)),
         )
         assert samples.weight.max() < 8.0
 

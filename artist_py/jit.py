@@ -1,7 +1,7 @@
 """How kernels are compiled and where they are cached; the only importer of numba's decorators.
 
-`kernel` is called from Python, once per pass. `function` is called from kernels; called from Python it is an ordinary
-function, so that unit tests and debuggers see plain Python. An optional part of a scene travels as an *argument* that is
+`kernel` is called from Python, once per pass. `function` is called from kernels; called from Python it is an
+ordinary function, so that unit tests and debuggers see plain Python. An optional part of a scene travels as an *argument* that is
 `None` when absent: numba prunes `if part is None` per type, so that an absent part is not compiled at all.
 """
 
@@ -88,7 +88,9 @@ FASTMATH = {"nsz", "arcp", "contract", "afn", "reassoc"}
 # Without numba's run time (_nrt) nothing in a kernel can allocate or count references: it would not compile.
 # Inlining everything saves the scene's many words at every call, 30 % of the kernels' time, and compiles no slower.
 kernel = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=FASTMATH, _nrt=False)
-function = register_jitable(error_model="numpy", fastmath=FASTMATH, no_cfunc_wrapper=True, forceinline=True, _nrt=False)
+function = register_jitable(
+    error_model="numpy", fastmath=FASTMATH, no_cfunc_wrapper=True, forceinline=True, _nrt=False
+)
 
 
 def callback(signature):

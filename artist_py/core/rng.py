@@ -37,7 +37,9 @@ def _lower_reverse_bits(context, builder, result, arg_types, args):
     return builder.bitreverse(context.cast(builder, args[0], arg_types[0], types.uint32))
 
 
-primitive(lambda value: types.uint32 if isinstance(value, types.Integer) else None)(reverse_bits, _lower_reverse_bits)
+primitive(lambda value: types.uint32 if isinstance(value, types.Integer) else None)(
+    reverse_bits, _lower_reverse_bits
+)
 
 
 def wrap32(value):
@@ -46,7 +48,8 @@ def wrap32(value):
 
 
 primitive(lambda value: types.uint32 if isinstance(value, types.Integer) else None)(
-    wrap32, lambda cx, b, result, typs, args: b.trunc(cx.cast(b, args[0], typs[0], types.uint64), ir.IntType(32))
+    wrap32,
+    lambda cx, b, result, typs, args: b.trunc(cx.cast(b, args[0], typs[0], types.uint64), ir.IntType(32)),
 )
 
 
@@ -84,7 +87,7 @@ def _owen_hash(value, seed):
 def _pascal(bits):
     """Second Sobol dimension from the first, both as binary fractions.
 
-    The generator matrix is Pascal's triangle modulo 2, a Taylor shift t -> 1 + x of the index polynomial, done by halving.
+    The generator matrix is Pascal's triangle modulo 2: a Taylor shift t -> 1 + x of the index polynomial, by halving.
     """
     bits = wrap32(bits ^ wrap32(bits << _U32(16)))
     bits = wrap32(bits ^ (wrap32(bits << _U32(8)) & _U32(0xFF00FF00)))

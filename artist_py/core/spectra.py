@@ -72,7 +72,10 @@ def ior_at(dense, first, row, wavelength):
     position = min(max(wavelength - first - 0.5, 0.0), dense.shape[1] - 1.001)
     bin_index = int(position)
     fraction = position - bin_index
-    return np.float64(dense[row, bin_index]) * (1.0 - fraction) + np.float64(dense[row, bin_index + 1]) * fraction
+    return (
+        np.float64(dense[row, bin_index]) * (1.0 - fraction)
+        + np.float64(dense[row, bin_index + 1]) * fraction
+    )
 
 
 @function

@@ -10,8 +10,22 @@ import operator
 import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
-from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, infer_getattr, infer_global, signature
-from numba.extending import NativeValue, lower_builtin, lower_getattr, models, register_model, typeof_impl, unbox
+from numba.core.typing.templates import (
+    AbstractTemplate,
+    AttributeTemplate,
+    infer_getattr,
+    infer_global,
+    signature,
+)
+from numba.extending import (
+    NativeValue,
+    lower_builtin,
+    lower_getattr,
+    models,
+    register_model,
+    typeof_impl,
+    unbox,
+)
 from numba.np.numpy_support import from_dtype
 
 INT64 = ir.IntType(64)
@@ -75,7 +89,7 @@ def _unbox(typ, obj, c):
     table.shape = c.unbox(typ.shape, shape).value
     for each in (address, shape):
         c.pyapi.decref(each)
-    return NativeValue(table._getvalue(), is_error=cgutils.is_not_null(c.builder, c.pyapi.err_occurred()))
+    return NativeValue(table._getvalue(), is_error=cgutils.is_not_null(c.builder, c.pyapi.err_occurred()))  # noqa: SLF001 - numba's own way
 
 
 @infer_getattr
@@ -111,7 +125,11 @@ class _GetTemplate(AbstractTemplate):
 class _SetTemplate(AbstractTemplate):
     def generic(self, args, kws):
         table, index, value = args
-        if isinstance(table, TableType) and _index_types(table, index) and isinstance(value, types.Number | types.Boolean):
+        if (
+            isinstance(table, TableType)
+            and _index_types(table, index)
+            and isinstance(value, types.Number | types.Boolean)
+        ):
             return signature(types.none, table, index, table.dtype)
         return None
 
@@ -120,7 +138,11 @@ def element_pointer(context, builder, typ, value, index_type, index):
     """Address of an element, as a pointer to what its type is in memory."""
     table = cgutils.create_struct_proxy(typ)(context, builder, value=value)
     kinds = _index_types(typ, index_type)
-    indices = cgutils.unpack_tuple(builder, index, len(kinds)) if isinstance(index_type, types.BaseTuple) else [index]
+    indices = (
+        cgutils.unpack_tuple(builder, index, len(kinds))
+        if isinstance(index_type, types.BaseTuple)
+        else [index]
+    )
     shape = cgutils.unpack_tuple(builder, table.shape, typ.ndim)
     offset = ir.Constant(INT64, 0)
     for size, kind, each in zip(shape, kinds, indices, strict=True):

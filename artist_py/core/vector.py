@@ -9,7 +9,13 @@ import operator
 import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
-from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, infer_getattr, infer_global, signature
+from numba.core.typing.templates import (
+    AbstractTemplate,
+    AttributeTemplate,
+    infer_getattr,
+    infer_global,
+    signature,
+)
 from numba.extending import (
     NativeValue,
     box,
@@ -201,7 +207,9 @@ _FLAGS = ("nsz", "arcp", "contract", "afn", "reassoc")
 
 
 def _register_operator(python_operator, instruction):
-    infer_global(python_operator)(type(f"_Template_{instruction}", (_ArithmeticTemplate,), {"key": python_operator}))
+    infer_global(python_operator)(
+        type(f"_Template_{instruction}", (_ArithmeticTemplate,), {"key": python_operator})
+    )
 
     def lower(context, builder, sig, args):
         result = sig.return_type
@@ -428,7 +436,9 @@ primitive(_lanes())(maximum, lambda cx, b, result, typs, args: _call_intrinsic("
 primitive(_lanes())(square_root, lambda cx, b, result, typs, args: _call_intrinsic("sqrt")(b, *args))
 primitive(_lanes())(
     reciprocal,
-    lambda cx, b, result, typs, args: b.fdiv(_splat(cx, b, result, ir.Constant(ir.DoubleType(), 1.0), types.float64), args[0]),
+    lambda cx, b, result, typs, args: b.fdiv(
+        _splat(cx, b, result, ir.Constant(ir.DoubleType(), 1.0), types.float64), args[0]
+    ),
 )
 
 

@@ -37,7 +37,9 @@ def pdf_emitter(needs, geometry, emitter, reference, position, normal):
     if kind == SPHERE_EMITTER:
         density = pdf_sphere(needs.sphere_emitters, emitter, reference, position, normal)
     elif kind == QUADRIC_EMITTER:
-        density = pdf_quadric_emitter(needs.quadric_emitters, emitter, geometry.quadrics, reference, position, normal)
+        density = pdf_quadric_emitter(
+            needs.quadric_emitters, emitter, geometry.quadrics, reference, position, normal
+        )
     else:
         density = solid_angle_density(1.0 / emitter.area, reference, position, normal)
     return density * emitter.pdf_select

@@ -12,7 +12,6 @@ from ..jit import function
 from .area import no_emitter_point, solid_angle_density
 from .types import EmitterPoint
 
-
 # A reference this near to the sphere lies on it, within rounding, and must not be taken for outside.
 ON_SPHERE = 1.0 - 1e-9
 

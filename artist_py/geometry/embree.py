@@ -61,7 +61,9 @@ SIGNATURES = {
 def find_library():
     """Path of the Embree 4 library that the `embreex` wheel carries."""
     files = metadata.files("embreex") or []
-    candidates = [file for file in files if "libs/" in str(file).replace("\\", "/") and "embree4" in file.name]
+    candidates = [
+        file for file in files if "libs/" in str(file).replace("\\", "/") and "embree4" in file.name
+    ]
     if not candidates:
         looked_for = "*libs/*embree4* of the installed package embreex"
         raise ArtistError(f"Embree 4 was not found: no file {looked_for}; reinstall embreex >= 4.4")
@@ -109,7 +111,9 @@ class Device:
     def __init__(self, threads):
         self.handle = rtc.rtcNewDevice(f"threads={threads}".encode())
         if not self.handle:
-            raise EmbreeError(f"Embree has no device: {ERROR_NAMES.get(rtc.rtcGetDeviceError(None), 'unknown error')}")
+            raise EmbreeError(
+                f"Embree has no device: {ERROR_NAMES.get(rtc.rtcGetDeviceError(None), 'unknown error')}"
+            )
         major = rtc.rtcGetDeviceProperty(self.handle, PROPERTY_VERSION_MAJOR)
         if major != 4:
             raise EmbreeError(f"{find_library()} is Embree {major}; version 4 is needed")
@@ -144,7 +148,9 @@ class EmbreeScene:
         self.device.check(name)
 
     def _share(self, geometry, kind, layout, array):
-        rtc.rtcSetSharedGeometryBuffer(geometry, kind, 0, layout, array.ctypes.data, 0, array.strides[0], len(array))
+        rtc.rtcSetSharedGeometryBuffer(
+            geometry, kind, 0, layout, array.ctypes.data, 0, array.strides[0], len(array)
+        )
         self.kept.append(array)
 
     def add_faces(self, geometry_id, vertices, faces, name, blocks_light=True):
@@ -156,7 +162,7 @@ class EmbreeScene:
         self._attach(geometry, geometry_id, name, blocks_light)
 
     def add_quadrics(self, geometry_id, quadrics, callbacks, name, blocks_light=True):
-        """Exact shapes (quadric_dtype) as user geometry; `callbacks` are the addresses (bounds, intersect, occluded)."""
+        """Exact shapes (quadric_dtype) as user geometry; `callbacks` are the addresses of bounds, intersect, occluded."""
         bounds, intersect, occluded = callbacks
         geometry = rtc.rtcNewGeometry(self.device.handle, GEOMETRY_USER)
         rtc.rtcSetGeometryUserPrimitiveCount(geometry, len(quadrics))
@@ -276,7 +282,12 @@ HIT_TYPE = types.NamedTuple(
 
 
 def _is_query(embree, origin, direction, t_far):
-    return isinstance(embree, types.Integer) and origin == VEC3 and direction == VEC3 and isinstance(t_far, types.Number)
+    return (
+        isinstance(embree, types.Integer)
+        and origin == VEC3
+        and direction == VEC3
+        and isinstance(t_far, types.Number)
+    )
 
 
 def _lower_closest_hit(context, builder, result, arg_types, args):

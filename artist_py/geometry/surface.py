@@ -20,7 +20,7 @@ ERROR_SCALE = 2.0**-20
 
 
 class Surface(NamedTuple):
-    """A point on a surface. `normal` is geometric, `shading_normal` interpolated; both unit, on the shape's outer side."""
+    """A point on a surface; `normal` is geometric, `shading_normal` interpolated, both unit, on the outer side."""
 
     position: Vec3
     normal: Vec3
@@ -139,7 +139,7 @@ def _triangle_uv(textures, geometry, index, hit):
 
 @function
 def _smooth(needed, geometry, index, is_smooth, hit, patch):
-    """The interpolated normal; the geometric one is turned to its side, since the file's normals say what is outside."""
+    """The interpolated normal; the geometric one is turned to its side, for the file's normals say what is outside."""
     if needed is None:
         return patch
     if not is_smooth:
@@ -214,4 +214,3 @@ def offset_position(position, normal, extent, direction):
     """`position` moved to the side of `normal` that `direction` points to, by the rounding error of its place."""
     error = ERROR_SCALE * extent
     return position + normal * (error if dot(normal, direction) > 0.0 else -error)
-

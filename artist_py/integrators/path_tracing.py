@@ -17,8 +17,8 @@ from ..jit import function, kernel
 from ..scene.tables import ABSORBER, Camera, Filter, Scene
 from ..transport.next_event import connect_to_emitter, radiance_of_hit
 from ..transport.roulette import Limits, after_roulette, is_ended_by_roulette
-from ..transport.subpath import go_straight, is_passed_through, scatter, start_path, vertex_at
 from ..transport.sensing import Sensing, store_sample, wavelengths_of_path
+from ..transport.subpath import go_straight, is_passed_through, scatter, start_path, vertex_at
 
 TILE = 32
 
@@ -50,7 +50,9 @@ class Pass(NamedTuple):
 
 
 @kernel
-def trace_paths(scene: Scene, camera: Camera, pixel_filter: Filter, sensing: Sensing, limits: Limits, work: Pass, image):
+def trace_paths(
+    scene: Scene, camera: Camera, pixel_filter: Filter, sensing: Sensing, limits: Limits, work: Pass, image
+):
     """Take tiles until none is left, trace one path per pixel, store linear RGB in `image` (h, w, 3) float32."""
     x0, x1, y0, y1 = work.crop
     tiles_x = (x1 - x0 + TILE - 1) // TILE
@@ -80,7 +82,9 @@ def trace_pixel(scene, camera, pixel_filter, sensing, limits, work, x, y, image)
     wavelengths, weights = wavelengths_of_path(sensing, stream, WAVELENGTH)
     traced = path_radiance(scene, limits, sensing, stream, wavelengths, origin, direction, camera.media)
     row, column = y - work.crop[2], x - work.crop[0]
-    store_sample(sensing, scene.spectra, image, row, column, traced.radiance * film_weight, wavelengths, weights)
+    store_sample(
+        sensing, scene.spectra, image, row, column, traced.radiance * film_weight, wavelengths, weights
+    )
     return traced
 
 
@@ -107,8 +111,9 @@ def _choice_numbers(emitters, needs, stream, pair):
 
 @function
 def _numbers_if(alias, dielectric, thin_dielectric, stream, pair):
+    # Nested, because numba prunes a test for None but not a conjunction.
     if alias is None:
-        if dielectric is None:
+        if dielectric is None:  # noqa: SIM102
             if thin_dielectric is None:
                 return 0.0, 0.0
     return random_pair(stream, pair)

@@ -20,11 +20,18 @@ def render_aovs(compiled, sampler, settings, observer):
     for sample in range(SAMPLES):
         progress = np.zeros(4, np.int64)
         scene, sensing = sampler.scene_and_sensing(sample, None)
-        work = Pass(sampler.seed + SEED_OFFSET, sample, sampler.stratified_pairs, sampler.crop, sampler.width, Table(progress))
+        work = Pass(
+            sampler.seed + SEED_OFFSET,
+            sample,
+            sampler.stratified_pairs,
+            sampler.crop,
+            sampler.width,
+            Table(progress),
+        )
         arguments = scene, compiled.camera, compiled.pixel_filter, sensing, work, tables
         if sample == 0:
             sampler.compile_calls([(trace_first_hits, arguments)], observer)
-        sampler._run([(trace_first_hits, arguments)] * sampler.threads)
+        sampler.run([(trace_first_hits, arguments)] * sampler.threads)
     return {name: values for name, values in _finished(compiled, hits).items() if name in settings.aovs}
 
 

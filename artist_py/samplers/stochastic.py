@@ -56,7 +56,7 @@ class StochasticSampler:
         """Trace one path per pixel and add them to the film; `False` if `stop` was set before all were traced."""
         progress = np.zeros(4, np.int64)
         arguments = self._arguments(iteration, progress)
-        self._run([(trace_paths, arguments)] * self.threads, stop, progress)
+        self.run([(trace_paths, arguments)] * self.threads, stop, progress)
         if progress[STOP]:
             return False
         self.add_to_film(iteration)
@@ -78,8 +78,12 @@ class StochasticSampler:
         if render.wavelengths != "shared":
             return compiled.scene, Sensing(zero, ratio, Table(compiled.nodes), None, bands)
         shared = shared_wavelengths(compiled.nodes, render.hero_count, render.seed, iteration)
-        spectra = resolve_spectra(compiled.spectra, compiled.ior_rows, compiled.wavelength_range[0], shared[0])
-        return compiled.scene._replace(spectra=spectra), Sensing(zero, ratio, Table(compiled.nodes), Table(shared), bands)
+        spectra = resolve_spectra(
+            compiled.spectra, compiled.ior_rows, compiled.wavelength_range[0], shared[0]
+        )
+        return compiled.scene._replace(spectra=spectra), Sensing(
+            zero, ratio, Table(compiled.nodes), Table(shared), bands
+        )
 
     def add_to_film(self, iteration):
         """Add the image of the iteration to the film, in row order whatever the threads."""
@@ -89,7 +93,7 @@ class StochasticSampler:
         jobs = [
             (add_rows, self._rows(iteration, edges[i], edges[i + 1], places[i])) for i in range(self.threads)
         ]
-        for count, where in zip(self._run(jobs), places, strict=True):
+        for count, where in zip(self.run(jobs), places, strict=True):
             if count:
                 film.reject(count, where, (self.crop[0], self.crop[2]), iteration)
         film.iterations += 1
@@ -102,7 +106,7 @@ class StochasticSampler:
             self.image, film.sums, film.odd_sums, film.squares, bands, film.band_sums, is_odd, first, end, places,
         )  # fmt: skip
 
-    def _run(self, jobs, stop=None, progress=None):
+    def run(self, jobs, stop=None, progress=None):
         """Run `(kernel, arguments)` on the threads; a `stop` that is set meanwhile is passed on through `progress`."""
         futures = [self.pool.submit(kernel, *arguments) for kernel, arguments in jobs]
         pending = set(futures)

@@ -27,7 +27,7 @@ def shared_wavelengths(nodes, count, seed, iteration):
 
 
 def resolve_spectra(dense, ior_rows, first, wavelengths):
-    """`Spectra` at the given wavelengths only: bins for spectra, linear between their centres for indices of refraction."""
+    """`Spectra` at the given wavelengths only: by bin, and indices of refraction linear between the bins' centres."""
     last = dense.shape[1] - 1
     bins = np.clip((wavelengths - first).astype(int), 0, last)
     values = dense[:, bins]
@@ -35,4 +35,3 @@ def resolve_spectra(dense, ior_rows, first, wavelengths):
         centres = first + 0.5 + np.arange(last + 1)
         values[ior_rows] = [np.interp(wavelengths, centres, dense[row]) for row in ior_rows]
     return Spectra(Table(values), None, float(first))
-

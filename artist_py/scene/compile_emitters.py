@@ -22,7 +22,9 @@ class EmitterCompiler:
     def __init__(self, geometry, spectra):
         self.geometry, self.spectra = geometry, spectra
         self.records, self.powers, self.count = [], [], 0
-        self.light = np.zeros(spectra.last - spectra.first)  # power per nm of all emitters, W / nm in render units
+        self.light = np.zeros(
+            spectra.last - spectra.first
+        )  # power per nm of all emitters, W / nm in render units
         self.problems = []
         for placed in geometry.placed:
             if placed.shape.emission is not None:
@@ -136,4 +138,8 @@ def _uniform_scale(linear):
     """The factor of a similarity, or `None` for other maps."""
     gram = linear.T @ linear
     factor = np.trace(gram) / 3.0
-    return math.sqrt(factor) if np.allclose(gram, factor * np.eye(3), rtol=0, atol=SIMILARITY_TOLERANCE * factor) else None
+    return (
+        math.sqrt(factor)
+        if np.allclose(gram, factor * np.eye(3), rtol=0, atol=SIMILARITY_TOLERANCE * factor)
+        else None
+    )

@@ -54,7 +54,9 @@ class Parts:
 
     direct: list
     objects: dict
-    instances: list  # (graph.Instance, object name, matrix (4, 4) from the object's stored space to the world)
+    instances: (
+        list  # (graph.Instance, object name, matrix (4, 4) from the object's stored space to the world)
+    )
     warnings: list = field(default_factory=list)
 
 
@@ -73,7 +75,9 @@ def collect_parts(graph):
     objects = {}
     for name in dict.fromkeys(instance.object for instance in graph.instances):
         shapes = graph.objects[name].shapes
-        parts = [build(shape, label_of(shape, f"objects.{name}.shapes.{i}")) for i, shape in enumerate(shapes)]
+        parts = [
+            build(shape, label_of(shape, f"objects.{name}.shapes.{i}")) for i, shape in enumerate(shapes)
+        ]
         objects[name] = parts
     if problems:
         raise SceneError(problems)
@@ -152,7 +156,10 @@ class GeometryCompiler:
                     quadrics.append(items)
                 else:
                     is_quad = part.kind == tables.PARALLELOGRAMS
-                    pool, items = ("parallelograms" if is_quad else "triangles"), part.faces + np.uint32(n_vertices)
+                    pool, items = (
+                        ("parallelograms" if is_quad else "triangles"),
+                        part.faces + np.uint32(n_vertices),
+                    )
                     (parallelograms if is_quad else triangles).append(items)
                     vertices.append(vertex_records(part))
                     n_vertices += len(part.vertices)

@@ -112,7 +112,9 @@ class MaterialCompiler:
             row["is_dispersive"], row["eta"] = 1, self.spectra.ior_row(table)
         if isinstance(material, scene_graph.Dielectric):
             if len(self.media) > MAX_MEDIA:
-                raise SceneError([problem(material, "type", f"expected at most {MAX_MEDIA} dielectric materials")])
+                raise SceneError(
+                    [problem(material, "type", f"expected at most {MAX_MEDIA} dielectric materials")]
+                )
             row["medium"] = len(self.media)
             self.media.append((material.priority, row["eta"], row["ior"]))
 

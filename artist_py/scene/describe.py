@@ -15,7 +15,10 @@ FEATURES = {
     "dielectric": ("smooth glass, refraction", "no dielectric material"),
     "thin_dielectric": ("thin panes", "no thin-dielectric material"),
     "pass_through": ("surfaces that light ignores", 'no material of type "none"'),
-    "dispersion": ("refraction by wavelength, lane densities", "no index of refraction depends on wavelength"),
+    "dispersion": (
+        "refraction by wavelength, lane densities",
+        "no index of refraction depends on wavelength",
+    ),
     "media": ("a stack of nested dielectrics", "no two shapes of glass touch, and the camera is in air"),
     "triangles": ("triangle meshes", "no mesh"),
     "smooth_triangles": ("interpolated normals", "no mesh has vertex normals"),
@@ -57,7 +60,7 @@ def _geometry(compiled):
     rows = [(name, f"{count:,}") for name, count in counts.items() if count]
     centre = ", ".join(f"{x:.6g}" for x in space.centre)
     rows += [("centre", centre), ("bounding radius", f"{space.radius:.6g} scene units")]
-    return rows + [("built in", f"{compiled.seconds:.2f} s")]
+    return [*rows, ("built in", f"{compiled.seconds:.2f} s")]
 
 
 def _lights(compiled):
@@ -85,7 +88,9 @@ def _materials(compiled):
 def _features(compiled, needed):
     needs = compiled.scene.needs
     assert set(FEATURES) == set(tables.Needs._fields)  # noqa: S101 - a feature without words would be left out silently
-    items = [(name.replace("_", " "), *FEATURES[name]) for name in FEATURES if bool(getattr(needs, name)) == needed]
+    items = [
+        (name.replace("_", " "), *FEATURES[name]) for name in FEATURES if bool(getattr(needs, name)) == needed
+    ]
     camera = compiled.camera
     if bool(camera.lens) == needed:
         items.append(("lens", "depth of field", "the camera is a pinhole"))
@@ -96,7 +101,9 @@ def _features(compiled, needed):
 
 def _memory(memory):
     rows = [(name, f"{size / 2**20:.1f} MiB") for name, size in memory.items() if size]
-    return rows + [("in all", f"{sum(memory.values()) / 2**20:.1f} MiB, and about 200 MiB for Python and kernels")]
+    return rows + [
+        ("in all", f"{sum(memory.values()) / 2**20:.1f} MiB, and about 200 MiB for Python and kernels")
+    ]
 
 
 def _flat(table, prefix=""):

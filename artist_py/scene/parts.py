@@ -1,4 +1,4 @@
-"""From a shape of the scene graph to primitives in the shape's own space: faces that share corners, or exact quadrics."""
+"""From a shape of the scene graph to primitives in the shape's own space: faces on a pool of corners, or quadrics."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -55,7 +55,9 @@ class Part:
         if normals is not None:
             normals = normals @ np.linalg.inv(transform[:3, :3])
             normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
-        return Part(self.shape, self.label, self.kind, vertices, self.faces, normals, self.uvs, is_mirrored=mirrored)
+        return Part(
+            self.shape, self.label, self.kind, vertices, self.faces, normals, self.uvs, is_mirrored=mirrored
+        )
 
     def bounds(self):
         """Corners (low, high) of the bounding box, float64 (2, 3)."""

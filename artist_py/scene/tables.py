@@ -41,7 +41,11 @@ parallelogram_dtype = np.dtype(
 
 quadric_dtype = np.dtype(
     [
-        ("object_to_world", "f8", (3, 4)),  # canonical frame to render space (or to the instanced object's frame)
+        (
+            "object_to_world",
+            "f8",
+            (3, 4),
+        ),  # canonical frame to render space (or to the instanced object's frame)
         ("world_to_object", "f8", (3, 4)),
         ("kind", "i8"),
     ],
@@ -210,4 +214,3 @@ class Scene(NamedTuple):
     media: Table | None  # medium_dtype; absent where no dielectric touches another
     textures: object | None
     needs: Needs
-

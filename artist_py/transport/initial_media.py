@@ -12,7 +12,7 @@ MAX_CROSSINGS = 10_000
 
 
 def media_at(scene, origin, direction):
-    """State of media.py at `origin`: of the dielectrics that a ray leaves without having entered, the first is innermost."""
+    """State of media.py at `origin`: of the dielectrics that a ray leaves without entering, the first is innermost."""
     entered, left = [], []
     for _ in range(MAX_CROSSINGS):
         hit = closest_hit(scene.geometry.embree, origin, direction, math.inf)

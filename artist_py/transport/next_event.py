@@ -8,7 +8,13 @@ from ..core.frame import to_local
 from ..core.rng import random_pair
 from ..core.spectra import black
 from ..core.vector import Spectrum, dot
-from ..emitters.dispatch import choose_emitter, emitted_radiance, is_emitting_towards, pdf_emitter, sample_emitter
+from ..emitters.dispatch import (
+    choose_emitter,
+    emitted_radiance,
+    is_emitting_towards,
+    pdf_emitter,
+    sample_emitter,
+)
 from ..geometry.embree import is_occluded
 from ..geometry.surface import leave_surface, offset_position
 from ..jit import function
@@ -80,5 +86,7 @@ def _of_hit(emitters, scene, surface, path, wavelengths):
     radiance = emitted_radiance(scene.spectra, emitter, wavelengths)
     if path.pdf_solid_angle == 0.0:
         return radiance
-    pdf_light = pdf_emitter(scene.needs, scene.geometry, emitter, path.reference, surface.position, surface.normal)
+    pdf_light = pdf_emitter(
+        scene.needs, scene.geometry, emitter, path.reference, surface.position, surface.normal
+    )
     return radiance * balance(path.pdf_solid_angle, pdf_light)

@@ -7,6 +7,7 @@ from ..core.vector import lane_max
 from ..jit import function
 from .subpath import with_throughput
 
+
 class Limits(NamedTuple):
     """How long paths may get, in edges."""
 

@@ -24,7 +24,9 @@ class Sensing(NamedTuple):
     """Wavelengths and sensor of one iteration; `shared` is absent where every path has wavelengths of its own."""
 
     zero: Spectrum  # zero at every wavelength of a path: says how many there are
-    ratio: Spectrum | None  # one at every wavelength, absent where no density depends on it: r of theory (2.6)
+    ratio: (
+        Spectrum | None
+    )  # one at every wavelength, absent where no density depends on it: r of theory (2.6)
     nodes: Table  # float64 (n + 1,), see core/wavelengths.py
     shared: Table | None  # float64 (2, C): wavelengths in nm, and weights 1 / (C p) in nm
     bands: Bands | None

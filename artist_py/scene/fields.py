@@ -4,7 +4,6 @@ A converter is called with a value and its place. It returns the typed value, or
 problems it found; its `expected` says in words what it takes.
 """
 
-import math
 import sys
 from dataclasses import MISSING, dataclass, field, fields
 from functools import cache
@@ -81,7 +80,7 @@ class Number:
         if isinstance(value, bool) or not isinstance(value, kinds):
             found = repr(value) if isinstance(value, float) else show(value)
             raise failure(at, f"expected {self.expected}, found {found}")
-        if math.isnan(value) or math.isinf(value) or abs(value) > FLOAT_LIMIT:
+        if not abs(value) <= FLOAT_LIMIT:  # true for NaN; no conversion, which an int may be too large for
             raise failure(at, expected("a finite number", value))
         if not self.allows(value):
             raise failure(at, expected(self.range(at), value))
@@ -261,7 +260,7 @@ class Table:
 def unknown_key(name, known, given):
     """The message of a key that does not exist, with the nearest one still free, or all there are."""
     free = [key for key in known if key not in given]
-    return "unknown key" + (nearest(name, free, otherwise=False) or nearest("", known))
+    return "unknown key" + (nearest(name, free, otherwise=False) or nearest(name, known, cutoff=0.8))
 
 
 @dataclass(frozen=True)

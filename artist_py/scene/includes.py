@@ -80,7 +80,8 @@ def read_text(file):
 def reason(error):
     """Why a file cannot be read, in the words of a message."""
     known = {FileNotFoundError: "no such file", IsADirectoryError: "expected a file, found a directory"}
-    return known.get(type(error)) or (getattr(error, "strerror", None) or str(error)).lower()
+    strerror = getattr(error, "strerror", None)
+    return known.get(type(error)) or (strerror.lower() if strerror else str(error))
 
 
 def parse(text, file):

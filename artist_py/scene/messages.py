@@ -1,12 +1,16 @@
 """The words of scene errors: values as the user wrote them, choices, and the nearest known name."""
 
+import json
+import re
 from difflib import get_close_matches
+
+BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def show(value, depth=0):
     """A value in TOML's notation, never long."""
     if isinstance(value, str):
-        text = '"' + value[:60].replace("\n", "\\n") + '"'
+        text = json.dumps(value[:60], ensure_ascii=False)
     elif isinstance(value, bool):
         text = str(value).lower()
     elif isinstance(value, int):
@@ -21,6 +25,11 @@ def show(value, depth=0):
     return text if len(text) <= 80 else text[:77] + "..."
 
 
+def dotted(keys):
+    """A path of keys and indices as TOML writes it, with quotes where a key needs them."""
+    return ".".join(str(key) if BARE_KEY.fullmatch(str(key)) else show(key) for key in keys)
+
+
 def listing(words):
     """Words as a choice: "a", "b" or "c"; a long list is cut."""
     words = [show(word) for word in words]
@@ -30,10 +39,10 @@ def listing(words):
     return " or ".join(filter(None, [", ".join(words[:-1]), words[-1]])) if words else "nothing"
 
 
-def nearest(word, known, *, otherwise=True):
+def nearest(word, known, *, otherwise=True, cutoff=0.6):
     """The end of a message about an unknown word: the known one it is near, otherwise all that are known."""
     by_lower = {str(name).lower(): name for name in known}
-    match = get_close_matches(str(word)[:60].lower(), by_lower, n=1)
+    match = get_close_matches(str(word)[:60].lower(), by_lower, n=1, cutoff=cutoff)
     if match:
         return f", did you mean {show(by_lower[match[0]])}?"
     return f", expected {listing(known)}" if otherwise and known else ""

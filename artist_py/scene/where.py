@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 
 from artist_py.errors import Problem
+from artist_py.scene.messages import dotted
 
 
 @dataclass(eq=False)
@@ -91,7 +92,7 @@ class Where:
 
     def problem(self, message):
         """A Problem at this place."""
-        key = ".".join(map(str, self.keys)) or None
+        key = dotted(self.keys) or None
         if self.is_overridden:
             return Problem(message, "--set", None, key)
         return Problem(message, self.source.file, self.source.line(self.keys), key)

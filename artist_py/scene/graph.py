@@ -32,7 +32,8 @@ from artist_py.scene.transforms import are_parallel, direction, normalized, poin
 
 FILTER_RADIUS = {"box": 0.5, "tent": 1.0, "gaussian": 1.5, "blackman-harris": 1.5, "mitchell": 2.0}  # pixels
 INTEGRATORS = ("pt",)
-WHITE_LUMINANCE = 72983.25  # cd/m2 of a flat spectrum of radiance 1: 683.002 lm/W times the integral of ybar
+# cd/m2 of a flat spectrum of radiance 1: 683.002 lm/W times the integral of ybar.
+WHITE_LUMINANCE = {"CIE 1931 2": 72983.4866019817, "CIE 1964 10": 79680.2951650147}
 
 _count = Number(at_least=1, whole=True)
 _unit_range = SpectrumField(Number(at_least=0, at_most=1))
@@ -52,12 +53,14 @@ class Film(Node):
     )  # pixels; x1 and y1 are the first ones left out; default: the whole image
     filter: str = key(Choice(tuple(FILTER_RADIUS)), "blackman-harris")
     filter_radius: float = key(Number(above=0, at_most=32), None)  # pixels; default: as FILTER_RADIUS
-    white_luminance: float = key(Number(above=0), WHITE_LUMINANCE)  # cd/m2 that become Y = 1
-    observer: str = key(Choice(("CIE 1931 2", "CIE 1964 10")), "CIE 1931 2")
+    white_luminance: float = key(Number(above=0), None)  # cd/m2 with Y = 1; default: as WHITE_LUMINANCE
+    observer: str = key(Choice(tuple(WHITE_LUMINANCE)), "CIE 1931 2")
 
     def __post_init__(self):
         if self.filter_radius is None:
             object.__setattr__(self, "filter_radius", FILTER_RADIUS[self.filter])
+        if self.white_luminance is None:
+            object.__setattr__(self, "white_luminance", WHITE_LUMINANCE[self.observer])
 
     def problems(self):
         if self.crop is not None:

@@ -11,6 +11,7 @@ from ..errors import OptionError
 from ..film.accumulation import Film
 from ..film.image import FilmImage
 from .aovs import render_aovs
+from .backwards import BackwardsSampler
 from .stochastic import StochasticSampler
 
 PROGRESS_SECONDS = 0.25
@@ -68,7 +69,8 @@ def render(compiled, settings, observer=None, stop=None):
     film = _film_of(compiled, settings)
     for text in compiled.warnings:
         run.observer.warning(text)
-    with StochasticSampler(compiled, film, settings.threads) as sampler:
+    sampler_class = StochasticSampler if compiled.graph.render.integrator == "pt" else BackwardsSampler
+    with sampler_class(compiled, film, settings.threads) as sampler:
         seconds = sampler.compile_kernels(run.observer)
         run.observer.started(_plan(compiled, settings))
         run.begun = run.last_save = time.monotonic()

@@ -31,7 +31,7 @@ from artist_py.scene.spectrum_types import Constant, RefractiveIndex, Spectrum
 from artist_py.scene.transforms import are_parallel, direction, normalized, point
 
 FILTER_RADIUS = {"box": 0.5, "tent": 1.0, "gaussian": 1.5, "blackman-harris": 1.5, "mitchell": 2.0}  # pixels
-INTEGRATORS = ("pt",)
+INTEGRATORS = ("pt", "lt", "bpt", "ppm", "bpm", "vcm")
 # cd/m2 of a flat spectrum of radiance 1: 683.002 lm/W times the integral of ybar.
 WHITE_LUMINANCE = {"CIE 1931 2": 72983.4866019817, "CIE 1964 10": 79680.2951650147}
 

@@ -189,6 +189,7 @@ class Filter(NamedTuple):
 
     offsets: Table  # float64 (n + 1,), pixels from the pixel centre
     weights: Table | None  # float64 (n,); absent where the filter is its own density
+    profile: Table  # float64: the filter's value over its width, 1 / pixel, for light that arrives anywhere
 
 
 class Camera(NamedTuple):

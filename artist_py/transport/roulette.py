@@ -3,8 +3,10 @@
 from typing import NamedTuple
 
 from ..core.rng import random_number
+from ..core.spectra import spectrum_at
 from ..core.vector import lane_max
 from ..jit import function
+from ..scene.tables import DIELECTRIC
 from .subpath import with_throughput
 
 
@@ -40,3 +42,15 @@ def after_roulette(limits, length, path):
     """The path that survived, its throughput made up for those that did not."""
     survival = survival_probability(limits, length, path)
     return with_throughput(path, path.throughput * (1.0 / survival))
+
+
+@function
+def local_survival(scene, vertex, wavelengths):
+    """Probability that a subpath goes on at a vertex: its reflectance, the same from both sides (theory 1.8).
+
+    Unlike the throughput it may therefore be part of the densities that weights compare.
+    """
+    material = scene.materials[vertex.surface.material]
+    if material.kind >= DIELECTRIC:
+        return 1.0
+    return min(1.0, float(lane_max(spectrum_at(scene.spectra, material.reflectance, wavelengths))))

@@ -1,0 +1,35 @@
+"""Adding the light image: splats of all light subpaths, in the order of the subpaths, whatever the threads."""
+
+from ..core.rng import stream_of
+from ..core.vector import with_lane
+from ..jit import function, kernel
+from ..transport.sensing import rgb_of, wavelengths_of_path
+from .path_tracing import WAVELENGTH
+
+
+@kernel
+def add_splats(scene, sensing, work, paths, splats, first, end, image):
+    """Add the splats that lie on rows [first, end) of the window to `image` (h, w, 3)."""
+    width = work.crop[1] - work.crop[0]
+    for index in range(paths.shape[0]):
+        path = paths[index]
+        if path.n_splats > 0:
+            pixel = (index // width + work.crop[2]) * work.width + index % width + work.crop[0]
+            stream = stream_of(work.seed, work.iteration, pixel, work.stratified_pairs)
+            wavelengths, weights = wavelengths_of_path(sensing, stream, WAVELENGTH)
+            for i in range(path.n_splats):
+                splat = splats[path.first_splat + i]
+                row = splat.pixel // width
+                if first <= row and row < end:
+                    _add(scene, image, row, splat.pixel % width, splat, wavelengths, weights)
+
+
+@function
+def _add(scene, image, row, column, splat, wavelengths, weights):
+    value = wavelengths
+    for i in range(len(splat.value)):
+        value = with_lane(value, i, splat.value[i])
+    red, green, blue = rgb_of(scene.spectra, value * weights, wavelengths)
+    image[row, column, 0] += red
+    image[row, column, 1] += green
+    image[row, column, 2] += blue

@@ -1,0 +1,41 @@
+"""The merging pass: photons gathered around the eye vertices that the first pass has stored. No ray is traced."""
+
+from ..core.atomic import fetch_and_add
+from ..core.rng import stream_of
+from ..jit import function, kernel
+from ..transport.merge import merge_at
+from ..transport.roulette import local_survival
+from ..transport.sensing import rgb_of, wavelengths_of_path
+from ..transport.vertices import CHUNK, load_vertex
+
+NEXT_CHUNK, MERGES = range(2)  # in progress
+
+
+@kernel
+def gather(scene, sensing, limits, work, method, grid, merging, eye, progress, image):
+    """Take chunks of stored eye vertices until none is left; add what they gather to `image` (h, w, 3)."""
+    stream = stream_of(work.seed, work.iteration, 0, 0)
+    wavelengths, weights = wavelengths_of_path(sensing, stream, 0)
+    width = work.crop[1] - work.crop[0]
+    merges = 0
+    while True:
+        chunk = fetch_and_add(progress, NEXT_CHUNK, 1)
+        if chunk >= eye.state[0]:
+            break
+        for row in range(chunk * CHUNK, chunk * CHUNK + eye.used[chunk]):
+            record = eye.records[row]
+            stored = load_vertex(scene.needs.smooth_triangles, record, sensing.zero)
+            survival = local_survival(scene, stored.vertex, wavelengths)
+            merged = merge_at(scene, method, grid, merging, stored, survival, limits, wavelengths)
+            merges += merged.count
+            _add(scene, image, record.pixel, width, stored.throughput * merged.value * weights, wavelengths)
+    fetch_and_add(progress, MERGES, merges)
+
+
+@function
+def _add(scene, image, pixel, width, contribution, wavelengths):
+    red, green, blue = rgb_of(scene.spectra, contribution, wavelengths)
+    row, column = pixel // width, pixel % width
+    image[row, column, 0] += red
+    image[row, column, 1] += green
+    image[row, column, 2] += blue

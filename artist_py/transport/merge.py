@@ -1,0 +1,112 @@
+"""Vertex merging: light vertices within a radius of an eye vertex (Georgiev et al. 2012; Hachisuka et al. 2012)."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..bsdf.dispatch import evaluate_bsdf, pdf_bsdf
+from ..core.affine import load_vec3
+from ..core.frame import to_local
+from ..core.spectra import black
+from ..core.vector import Spectrum, dot
+from ..jit import function
+from .mis import Partial, bracket, weight_of_merge
+from .photon_grid import bucket_of, cell_of
+from .subpath import is_on_side
+from .vertices import load_throughput
+
+# Photons on surfaces that face elsewhere are not of this surface: they would leak through edges and thin walls.
+MIN_NORMAL_COSINE = 0.4
+
+
+class Merging(NamedTuple):
+    """Constants of an iteration's merges."""
+
+    radius: float  # render-space units
+    normalization: float  # 1 / (pi r^2 N_L)
+
+
+class Merged(NamedTuple):
+    """What the photons around a vertex bring per eye throughput, and how many there were."""
+
+    value: Spectrum
+    count: int
+
+
+@function
+def merge_at(scene, method, grid, merging, stored, survival, limits, wavelengths):
+    """Sum over the photons within the radius of the stored eye vertex, each with its weight (1.14)."""
+    total, count = black(wavelengths), 0
+    p = stored.vertex.surface.position
+    i, j, k = _lower_cell(p.x, grid.cell), _lower_cell(p.y, grid.cell), _lower_cell(p.z, grid.cell)
+    buckets = grid.starts.shape[0] - 1
+    for corner in range(8):
+        bucket = bucket_of(i + (corner & 1), j + ((corner >> 1) & 1), k + (corner >> 2), buckets)
+        if not _is_visited(i, j, k, corner, bucket, buckets):
+            for row in range(grid.starts[bucket], grid.starts[bucket + 1]):
+                photon = grid.photons[row]
+                if _is_near(photon, p, merging.radius) and photon.length + stored.length <= limits.max_length:
+                    total = total + _merge(scene, method, photon, stored, survival, wavelengths)
+                    count += 1
+    return Merged(total * merging.normalization, count)
+
+
+@function
+def _lower_cell(x, cell):
+    """The lower of the two cells that a ball of half a cell's size around `x` can touch."""
+    return cell_of(x - 0.5 * cell, cell)
+
+
+@function
+def _is_visited(i, j, k, corner, bucket, buckets):
+    """Whether an earlier one of the eight cells has the same bucket: its photons must not count twice."""
+    for other in range(corner):
+        if bucket_of(i + (other & 1), j + ((other >> 1) & 1), k + (other >> 2), buckets) == bucket:
+            return True
+    return False
+
+
+@function
+def _is_near(photon, p, radius):
+    dx, dy, dz = photon.position[0] - p.x, photon.position[1] - p.y, photon.position[2] - p.z
+    return dx * dx + dy * dy + dz * dz <= radius * radius
+
+
+@function
+def _merge(scene, method, photon, stored, survival, wavelengths):
+    vertex = stored.vertex
+    normal = load_vec3(photon.normal)
+    direction = load_vec3(photon.direction)
+    wi = to_local(vertex.frame, direction)
+    material = scene.materials[vertex.surface.material]
+    pdf = pdf_bsdf(scene.needs, material, vertex.wo, wi)
+    if pdf == 0.0 or abs(dot(normal, vertex.surface.normal)) < MIN_NORMAL_COSINE:
+        return black(wavelengths)
+    if not is_on_side(scene.needs.smooth_triangles, vertex.surface, direction, wi):
+        return black(wavelengths)
+    f = evaluate_bsdf(scene.needs, material, scene.spectra, wavelengths, vertex.wo, wi)
+    weight = _weight(method.techniques.merge_once, scene, method, photon, stored, material, wi, pdf, survival)
+    shading = _shading_factor(scene.needs.smooth_triangles, normal, direction, wi)
+    return load_throughput(photon, wavelengths) * f * (weight * shading)
+
+
+@function
+def _weight(merge_once, scene, method, photon, stored, material, wi, pdf, survival):
+    """(1.14), or 1 where merging is the only technique."""
+    if merge_once is not None:
+        return 1.0
+    pdf_rev = pdf_bsdf(scene.needs, material, wi, stored.vertex.wo) * survival
+    light = bracket(method.counts, Partial(photon.c, photon.e), pdf * survival)
+    eye = bracket(method.counts, stored.partial, pdf_rev)
+    return weight_of_merge(method.counts, light, eye)
+
+
+@function
+def _shading_factor(smooth, normal, direction, wi):
+    """|wi.Ns| / |wi.Ng|: the photon's flux was counted on the geometric surface (theory 1.7)."""
+    if smooth is None:
+        return 1.0
+    return abs(wi.z) / max(abs(dot(normal, direction)), 1e-9)
+
+
+__all__ = ["MIN_NORMAL_COSINE", "Merged", "Merging", "merge_at", "np"]

@@ -1,8 +1,8 @@
 """How kernels are compiled and where they are cached; the only importer of numba's decorators.
 
 `kernel` is called from Python, once per pass. `function` is called from kernels; called from Python it is an
-ordinary function, so that unit tests and debuggers see plain Python. An optional part of a scene travels as an *argument* that is
-`None` when absent: numba prunes `if part is None` per type, so that an absent part is not compiled at all.
+ordinary function, so that unit tests and debuggers see plain Python. An optional part of a scene travels as an
+*argument* that is `None` when absent: numba prunes `if part is None` per type, so that an absent part is not compiled at all.
 """
 
 import hashlib

@@ -11,16 +11,22 @@ from ..geometry.quadrics import pdf_quadric_area, sample_quadric
 from ..geometry.surface import extent_of
 from ..jit import function
 from ..scene.tables import PARALLELOGRAM_EMITTER, QUADRIC_EMITTER, SPHERE_EMITTER
+from .dispatch import pdf_emitter
 
 
 class Emission(NamedTuple):
-    """The start of a light subpath; densities are without the choice of the emitter."""
+    """The start of a light subpath, and what weights need to know of it (theory 1.5).
+
+    `density` is p>_0 s>_0 with the choice of the emitter: of position and direction together, or of direction and
+    place on the disk for emitters at infinity.
+    """
 
     position: Vec3
     normal: Vec3  # unit, on the side of `direction`
     direction: Vec3  # unit
-    pdf_area: float  # of `position`, render-space units^-2
-    pdf_solid_angle: float  # of `direction`, sr^-1
+    density: float
+    cos_theta: float  # of `direction` with `normal`; 1 where there is no surface
+    can_be_hit: float  # 1, or 0 for emitters that eye subpaths cannot hit
     extent: float
 
 
@@ -42,8 +48,39 @@ def sample_emission(needs, geometry, emitter, u, v, u_direction, v_direction):
     normal = spot.normal * side
     local = square_to_cosine_hemisphere(u_direction, v_direction)
     direction = to_world(frame_around(normal), local)
-    pdf = pdf_emitted_direction(emitter, local.z)
-    return Emission(spot.position, normal, direction, spot.pdf_area, pdf, spot.extent)
+    density = spot.pdf_area * emitter.pdf_select * pdf_emitted_direction(emitter, local.z)
+    return Emission(spot.position, normal, direction, density, local.z, 1.0, spot.extent)
+
+
+@function
+def next_event_over_emission(needs, geometry, emitter, start, position, distance_squared):
+    """pc_0 / (p>_0 p>_1) without the cosine at the first vertex, which stands at `position`: C_1 of (1.5) times it."""
+    density = pdf_emitter(needs, geometry, emitter, position, start.position, start.normal)
+    return density * start.cos_theta / start.density
+
+
+@function
+def hit_over_emission(start):
+    """g<_0 / (p>_0 p>_1) without the cosine at the first vertex: E_1 of (1.6) times it."""
+    return start.can_be_hit * start.cos_theta / start.density
+
+
+@function
+def emission_over_next_event(needs, geometry, emitter, point, towards, pdf_light):
+    """p>_0 p>_1 / pc_0 without the cosine at the first vertex, for a point that next-event estimation has found.
+
+    `towards` leads from the vertex to the point, `pdf_light` is pc_0 as a density at the vertex, sr^-1.
+    """
+    cos_light = cos_between(point.normal, towards)
+    emission = pdf_emission_position(needs, geometry, emitter, point.position)
+    return emission * pdf_emitted_direction(emitter, cos_light) / (pdf_light * cos_light)
+
+
+@function
+def pdf_emission_of_hit(needs, geometry, emitter, surface, direction):
+    """p>_0 s>_0 of (1.17): how light subpaths would have begun where an eye subpath has hit the emitter."""
+    position = pdf_emission_position(needs, geometry, emitter, surface.position)
+    return position * pdf_emitted_direction(emitter, dot(direction, surface.normal))
 
 
 @function

@@ -8,19 +8,21 @@ from .path_tracing import WAVELENGTH
 
 
 @kernel
-def add_splats(scene, sensing, work, paths, splats, first, end, image):
+def add_splats(setup, first, end, image):
     """Add the splats that lie on rows [first, end) of the window to `image` (h, w, 3)."""
+    scene, sensing, work = setup.scene, setup.sensing, setup.work
+    paths, splats = setup.stores.paths, setup.stores.splats.records
     width = work.crop[1] - work.crop[0]
     for index in range(paths.shape[0]):
         path = paths[index]
         if path.n_splats > 0:
-            pixel = (index // width + work.crop[2]) * work.width + index % width + work.crop[0]
+            pixel = (path.pixel // width + work.crop[2]) * work.width + path.pixel % width + work.crop[0]
             stream = stream_of(work.seed, work.iteration, pixel, work.stratified_pairs)
             wavelengths, weights = wavelengths_of_path(sensing, stream, WAVELENGTH)
             for i in range(path.n_splats):
                 splat = splats[path.first_splat + i]
                 row = splat.pixel // width
-                if first <= row and row < end:
+                if first <= row < end:
                     _add(scene, image, row, splat.pixel % width, splat, wavelengths, weights)
 
 

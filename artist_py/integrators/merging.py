@@ -12,8 +12,9 @@ NEXT_CHUNK, MERGES = range(2)  # in progress
 
 
 @kernel
-def gather(scene, sensing, limits, work, method, grid, merging, eye, progress, image):
+def gather(setup, grid, merging, progress, image):
     """Take chunks of stored eye vertices until none is left; add what they gather to `image` (h, w, 3)."""
+    scene, sensing, work, eye = setup.scene, setup.sensing, setup.work, setup.stores.eye
     stream = stream_of(work.seed, work.iteration, 0, 0)
     wavelengths, weights = wavelengths_of_path(sensing, stream, 0)
     width = work.crop[1] - work.crop[0]
@@ -26,7 +27,7 @@ def gather(scene, sensing, limits, work, method, grid, merging, eye, progress, i
             record = eye.records[row]
             stored = load_vertex(scene.needs.smooth_triangles, record, sensing.zero)
             survival = local_survival(scene, stored.vertex, wavelengths)
-            merged = merge_at(scene, method, grid, merging, stored, survival, limits, wavelengths)
+            merged = merge_at(scene, setup.method, grid, merging, stored, survival, setup.limits, wavelengths)
             merges += merged.count
             _add(scene, image, record.pixel, width, stored.throughput * merged.value * weights, wavelengths)
     fetch_and_add(progress, MERGES, merges)

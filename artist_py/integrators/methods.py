@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from ..transport.mis import Counts
-from .bidirectional import Method, Techniques
+from .pair import Method, Techniques
 
 
 @dataclass(frozen=True)
@@ -32,15 +32,21 @@ METHODS = {
 }
 
 
-def method_of(name, n_pixels, merge_area):
-    """The `Method` of a name, for `n_pixels` pairs of subpaths and a merge area in render-space units squared."""
+def method_of(name, n_pixels, light_paths, offset, merge_area):
+    """The `Method` of a name, for so many pixels, light subpaths per pixel and a merge area in render-space units^2.
+
+    `offset` in [0, 1) says which pixels get one more light subpath than others, where `light_paths` is not whole.
+    """
+    n_light_paths = n_pixels * light_paths
     subset = METHODS[name]
     present = {field: getattr(subset, field) or None for field in Techniques._fields}
     counts = Counts(
         float(subset.hit),
         float(subset.nee),
-        float(subset.connect),
-        float(subset.light_image),
-        n_pixels * merge_area if subset.merge else 0.0,
+        light_paths if subset.connect else 0.0,
+        light_paths if subset.light_image else 0.0,
+        n_light_paths * merge_area if subset.merge else 0.0,
     )
-    return Method(Techniques(**present), counts, float(n_pixels), subset.hit)
+    return Method(
+        Techniques(**present), counts, float(n_pixels), n_light_paths, light_paths, offset, subset.hit
+    )

@@ -89,7 +89,7 @@ class StochasticSampler:
         """Add the image of the iteration to the film, in row order whatever the threads."""
         film, height = self.film, self.film.height
         edges = np.linspace(0, height, self.threads + 1).astype(int)
-        places = [np.zeros((REJECTED_KEPT, 2), np.int64) for _ in range(self.threads)]
+        places = [self._places() for _ in range(self.threads)]
         jobs = [
             (add_rows, self._rows(iteration, edges[i], edges[i + 1], places[i])) for i in range(self.threads)
         ]
@@ -97,6 +97,11 @@ class StochasticSampler:
             if count:
                 film.reject(count, where, (self.crop[0], self.crop[2]), iteration)
         film.iterations += 1
+
+    @staticmethod
+    def _places():
+        """Room for the places (row, column) of rejected contributions."""
+        return np.zeros((REJECTED_KEPT, 2), np.int64)
 
     def _rows(self, iteration, first, end, places):
         film = self.film
@@ -122,7 +127,7 @@ class StochasticSampler:
         """Compile the kernels, or load them from the cache; returns seconds. Says so if it takes a while."""
         calls = [
             (trace_paths, self._arguments(0, np.zeros(4, np.int64))),
-            (add_rows, self._rows(0, 0, 0, np.zeros((REJECTED_KEPT, 2), np.int64))),
+            (add_rows, self._rows(0, 0, 0, self._places())),
         ]
         return self.compile_calls(calls, observer)
 

@@ -55,7 +55,7 @@ def compile_filter(film):
     """`tables.Filter`; without weights where the filter has no negative lobes."""
     table = filter_table(film.filter, film.filter_radius)
     weights = None if np.all(table.weight == 1.0) else Table(table.weight)
-    half = int(round(film.filter_radius * PROFILE_STEPS))
+    half = round(film.filter_radius * PROFILE_STEPS)
     offsets = np.arange(-half, half + 1) / PROFILE_STEPS
     profile = evaluate_filter(film.filter, film.filter_radius, offsets)
     return tables.Filter(Table(table.offset), weights, Table(profile / np.trapezoid(profile, offsets)))

@@ -95,6 +95,7 @@ emitter_dtype = np.dtype(
         ("spectrum", "i4"),  # row of the spectra, W m^-2 sr^-1 nm^-1 once scaled
         ("two_sided", "i4"),
         ("quadric", "i4"),
+        ("media", "i8"),  # the dielectrics that it stands in, see transport/media.py
         ("scale", "f8"),
         ("pdf_select", "f8"),  # probability of choosing this emitter, discrete
         ("area", "f8"),  # render-space units squared

@@ -6,9 +6,9 @@ from typing import NamedTuple
 from ..bsdf.dispatch import evaluate_bsdf, pdf_bsdf
 from ..core.frame import to_local
 from ..core.spectra import black
-from ..core.vector import Spectrum, Vec3, dot
+from ..core.vector import Spectrum, dot
 from ..emitters.dispatch import choose_emitter, emitted_radiance, is_emitting_towards, sample_emitter
-from ..emitters.emission import cos_between, pdf_emission_position, pdf_emitted_direction
+from ..emitters.emission import emission_over_next_event
 from ..geometry.embree import is_occluded
 from ..geometry.surface import leave_surface, offset_position
 from ..jit import function
@@ -60,6 +60,12 @@ class Connected(NamedTuple):
 
 
 @function
+def no_connection(wavelengths):
+    """A connection that brings nothing and took no ray."""
+    return Connected(black(wavelengths), 0)
+
+
+@function
 def connect_to_light(scene, counts, vertex, partial, survival, wavelengths, u, v, u_select):
     """Next-event estimation at an eye vertex with its weight (1.15); radiance per throughput."""
     return _to_light(scene.emitters, scene, counts, vertex, partial, survival, wavelengths, u, v, u_select)
@@ -67,7 +73,7 @@ def connect_to_light(scene, counts, vertex, partial, survival, wavelengths, u, v
 
 @function
 def _to_light(emitters, scene, counts, vertex, partial, survival, wavelengths, u, v, u_select):
-    nothing = Connected(black(wavelengths), 0)
+    nothing = no_connection(wavelengths)
     if emitters is None:
         return nothing
     emitter = emitters.records[choose_emitter(emitters.alias, u_select)]
@@ -84,11 +90,12 @@ def _to_light(emitters, scene, counts, vertex, partial, survival, wavelengths, u
     if is_blocked(scene, vertex.surface, wi, end):
         return Connected(black(wavelengths), 1)
     pdf_light = point.pdf_solid_angle * emitter.pdf_select
-    cos_light = cos_between(point.normal, towards)
-    emission = pdf_emission_position(scene.needs, scene.geometry, emitter, point.position)
-    emission *= pdf_emitted_direction(emitter, cos_light) * there.cos_theta / (pdf_light * cos_light)
+    emission = emission_over_next_event(scene.needs, scene.geometry, emitter, point, towards, pdf_light)
     weight = weight_of_next_event(
-        counts, there.pdf_fwd / pdf_light, emission, bracket(counts, partial, there.pdf_rev)
+        counts,
+        there.pdf_fwd / pdf_light,
+        emission * there.cos_theta,
+        bracket(counts, partial, there.pdf_rev),
     )
     radiance = emitted_radiance(scene.spectra, emitter, wavelengths)
     return Connected(radiance * there.f_cos * (weight / pdf_light), 1)
@@ -97,7 +104,7 @@ def _to_light(emitters, scene, counts, vertex, partial, survival, wavelengths, u
 @function
 def connect_vertices(scene, counts, eye, eye_partial, eye_survival, light, light_survival, wavelengths):
     """An eye vertex joined with a stored light vertex, with its weight (1.13); radiance per eye throughput."""
-    nothing = Connected(black(wavelengths), 0)
+    nothing = no_connection(wavelengths)
     towards = light.vertex.surface.position - eye.surface.position
     distance_squared = dot(towards, towards)
     if distance_squared == 0.0:
@@ -125,7 +132,7 @@ def connect_vertices(scene, counts, eye, eye_partial, eye_survival, light, light
 @function
 def connect_to_camera(scene, counts, vertex, partial, survival, sensor, wavelengths):
     """A light vertex joined with the lens, with its weight (1.16); pixel value per light throughput and light path."""
-    nothing = Connected(black(wavelengths), 0)
+    nothing = no_connection(wavelengths)
     distance_squared = dot(sensor.towards, sensor.towards)
     wi = sensor.towards * (1.0 / math.sqrt(distance_squared))
     there = scattering_towards(scene, vertex, wi, wavelengths, survival, True)
@@ -136,6 +143,3 @@ def connect_to_camera(scene, counts, vertex, partial, survival, sensor, waveleng
     camera_density = sensor.pdf_solid_angle * there.cos_theta / distance_squared
     weight = weight_of_light_image(counts, camera_density, bracket(counts, partial, there.pdf_rev))
     return Connected(there.f_cos * (weight * sensor.importance / distance_squared), 1)
-
-
-__all__ = ["Connected", "Vec3", "connect_to_camera", "connect_to_light", "connect_vertices", "scattering_towards"]

@@ -2,8 +2,6 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
 from ..bsdf.dispatch import evaluate_bsdf, pdf_bsdf
 from ..core.affine import load_vec3
 from ..core.frame import to_local
@@ -107,6 +105,3 @@ def _shading_factor(smooth, normal, direction, wi):
     if smooth is None:
         return 1.0
     return abs(wi.z) / max(abs(dot(normal, direction)), 1e-9)
-
-
-__all__ = ["MIN_NORMAL_COSINE", "Merged", "Merging", "merge_at", "np"]

@@ -1,9 +1,9 @@
 """Weights of multiple importance sampling over all techniques of vertex connection and merging.
 
-A path is found by hitting an emitter (hit), next-event estimation (nee), connecting two subpaths (vc), connecting a light
-subpath to the lens (lt), or merging (vm). A subpath carries two numbers per arrived vertex, C and E, from which the
-weight of every technique follows (theory 1.3): C is what all connections that end in the edge just behind would do, E
-everything further away. In streaming form C and E change
+A path is found by hitting an emitter (hit), next-event estimation (nee), connecting two subpaths (vc), connecting a
+light subpath to the lens (lt), or merging (vm). A subpath carries two numbers per arrived vertex, C and E, from which
+the weight of every technique follows (theory 1.3): C is what all connections that end in the edge just behind would
+do, E everything further away. In streaming form C and E change
 
 * when a direction is sampled: (1.19), `after_scatter` and `after_delta`;
 * on arrival at the next vertex: (1.20), `on_arrival`.
@@ -13,6 +13,7 @@ A technique that is switched off has a count of zero; nothing else changes (theo
 
 from typing import NamedTuple
 
+from ..core.vector import dot
 from ..jit import function
 
 
@@ -29,11 +30,13 @@ class Counts(NamedTuple):
     nee: float
     vc: float
     lt: float
-    vm_area: float  # a = n_vm pi r^2: light subpaths in the photon map times the merge area, render-space units^2
+    vm_area: (
+        float  # a = n_vm pi r^2: light subpaths in the photon map times the merge area, render-space units^2
+    )
 
 
 class Partial(NamedTuple):
-    """C and E of a subpath, and whether its last vertex may be a connection's end."""
+    """C and E of a subpath at its last vertex."""
 
     c: float
     e: float
@@ -47,10 +50,10 @@ def on_arrival(partial, distance_squared, cos_theta):
 
 
 @function
-def after_scatter(counts, count_connections, partial, pdf_fwd, pdf_rev, cos_theta):
+def after_scatter(counts, partial, pdf_fwd, pdf_rev, cos_theta):
     """(1.19) at a vertex that can be connected and merged; `cos_theta` is that of the direction left in."""
     e = cos_theta / pdf_fwd * bracket(counts, partial, pdf_rev)
-    return Partial(count_connections / pdf_fwd, e)
+    return Partial(counts.vc / pdf_fwd, e)
 
 
 @function
@@ -60,6 +63,15 @@ def after_delta(partial, cos_theta_in, eta):
     `eta` is n on the side left into over n on the side arrived from; the lobe's probability is the same both ways.
     """
     return Partial(0.0, partial.e * cos_theta_in / (eta * eta))
+
+
+@function
+def partial_after(counts, partial, step, surface, survival, cos_in):
+    """C and E after a step (`Scattered`), survival of roulette included in its densities."""
+    if step.is_delta:
+        return after_delta(partial, cos_in, step.eta)
+    cos_out = abs(dot(step.path.direction, surface.normal))
+    return after_scatter(counts, partial, step.pdf_fwd * survival, step.pdf_rev * survival, cos_out)
 
 
 @function

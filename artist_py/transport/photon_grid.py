@@ -44,7 +44,7 @@ class Grid(NamedTuple):
 @function
 def cell_of(x, cell):
     """Integer coordinate of the cell that holds `x`."""
-    return int(math.floor(x / cell))
+    return math.floor(x / cell)
 
 
 @function
@@ -66,7 +66,7 @@ def count_photons(grid, records, paths, first, end):
         path = paths[index]
         for i in range(path.n_vertices):
             bucket = _bucket_of_vertex(records[path.first_vertex + i], grid.cell, buckets)
-            if first <= bucket and bucket < end:
+            if first <= bucket < end:
                 grid.starts[bucket + 1] += 1
                 total += 1
     return total
@@ -89,7 +89,7 @@ def place_photons(grid, records, paths, first, end, before):
         for i in range(path.n_vertices):
             record = records[path.first_vertex + i]
             bucket = _bucket_of_vertex(record, grid.cell, buckets)
-            if first <= bucket and bucket < end:
+            if first <= bucket < end:
                 row = grid.starts[bucket + 1]
                 grid.starts[bucket + 1] = row + 1
                 _copy(record, grid.photons[row])
@@ -98,7 +98,9 @@ def place_photons(grid, records, paths, first, end, before):
 @function
 def _bucket_of_vertex(record, cell, buckets):
     position = record.position
-    return bucket_of(cell_of(position[0], cell), cell_of(position[1], cell), cell_of(position[2], cell), buckets)
+    return bucket_of(
+        cell_of(position[0], cell), cell_of(position[1], cell), cell_of(position[2], cell), buckets
+    )
 
 
 @function

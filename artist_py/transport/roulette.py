@@ -7,7 +7,7 @@ from ..core.spectra import spectrum_at
 from ..core.vector import lane_max
 from ..jit import function
 from ..scene.tables import DIELECTRIC
-from .subpath import with_throughput
+from .subpath import Path, with_throughput
 
 
 class Limits(NamedTuple):
@@ -54,3 +54,19 @@ def local_survival(scene, vertex, wavelengths):
     if material.kind >= DIELECTRIC:
         return 1.0
     return min(1.0, float(lane_max(spectrum_at(scene.spectra, material.reflectance, wavelengths))))
+
+
+@function
+def survived(path, survival):
+    """The path that `local_survival` has spared; the density of its direction now holds the survival."""
+    return Path(
+        path.origin,
+        path.direction,
+        path.throughput * (1.0 / survival),
+        path.pdf_solid_angle * survival,
+        path.reference,
+        path.radiance_scale,
+        path.ratio,
+        path.media,
+        False,
+    )

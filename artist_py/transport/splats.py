@@ -24,11 +24,12 @@ class ChosenPixel(NamedTuple):
 
 
 @function
-def choose_pixel(pixel_filter, film_x, film_y, u, x0, x1, y0, y1):
-    """One of the pixels whose filter covers a film point, drawn by the filter's value; the weight makes up for the rest.
+def choose_pixel(pixel_filter, film_x, film_y, u, crop):
+    """One of the pixels whose filter covers a film point, drawn by the filter's value; the weight makes up for that.
 
     Every pixel's filter integrates to 1, so that the expectation is the filtered light image.
     """
+    x0, x1, y0, y1 = crop
     column, weight_x, u = _choose(pixel_filter.profile, film_x, u)
     row, weight_y, u = _choose(pixel_filter.profile, film_y, u)
     if column < x0 or column >= x1 or row < y0 or row >= y1:
@@ -58,7 +59,7 @@ def _choose(profile, x, u):
 def _value(profile, offset):
     """The filter at `offset` pixels from its centre, linear between samples."""
     position = (offset * PROFILE_STEPS) + 0.5 * (profile.shape[0] - 1)
-    index = int(math.floor(position))
+    index = math.floor(position)
     if index < 0 or index >= profile.shape[0] - 1:
         return 0.0
     fraction = position - index

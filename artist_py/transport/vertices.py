@@ -1,8 +1,8 @@
 """Vertices that outlive their subpath: where they are stored, and how they are read again.
 
-Records come from one pool. Threads take it chunk by chunk; a path whose vertices might not fit is not begun, the pool is
-enlarged and the path traced then, so that no vertex is ever dropped. Which chunk a path lies in depends on threads, the
-order of paths does not: whoever reads the pool goes by path.
+Records come from one pool. Threads take it chunk by chunk; a path whose vertices might not fit is not begun, the pool
+is enlarged and the path traced then, so that no vertex is ever dropped. Which chunk a path lies in depends on threads,
+the order of paths does not: whoever reads the pool goes by path.
 """
 
 from typing import NamedTuple
@@ -53,7 +53,7 @@ class Pool(NamedTuple):
 
 @function
 def has_room(pool, thread, count):
-    """Whether `thread` may store `count` <= CHUNK records in a row; takes a new chunk where its own has too few left."""
+    """Whether `thread` may store `count` <= CHUNK records in a row; takes a new chunk where its own is too full."""
     if pool is None:
         return True
     if pool.ends[thread, 0] + count <= pool.ends[thread, 1]:
@@ -129,4 +129,3 @@ def load_throughput(record, zero):
     for i in range(lane_count(zero)):
         throughput = with_lane(throughput, i, record.throughput[i])
     return throughput
-

@@ -93,7 +93,7 @@ def blur(distance, seed, camera):
 
 @pytest.mark.parametrize("distance", [1.5, 20.0])
 def test_circle_of_confusion(distance):
-    """Its radius is that of the lens times |1 / z - 1 / focus| on the film at distance 1; squared, half of it on average.
+    """Radius: that of the lens times |1 / z - 1 / focus|, on the film at distance 1; on average half of its square.
 
     The lamp's own square, and the pixel's, add a sixth of their squared sides each.
     """

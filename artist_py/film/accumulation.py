@@ -60,6 +60,38 @@ def _add_bands(band_sums, bands, row, column):
         band_sums[row, column, band] += bands[row, column, band]
 
 
+@kernel
+def add_technique_rows(image, weighted, unweighted, weighted_sums, unweighted_sums, first, end):
+    """Add rows [first, end) of one iteration's images of techniques (n, h, w, 3) to sums, and clear them.
+
+    Pixels that `add_rows` rejects in `image` are left out. Returns the number of values left out beyond those: what is
+    finite only with its weight.
+    """
+    count = 0
+    for technique in range(weighted.shape[0]):
+        for row in range(first, end):
+            for column in range(image.shape[1]):
+                if math.isfinite(image[row, column, 0] + image[row, column, 1] + image[row, column, 2]):
+                    count += _add_technique(weighted, weighted_sums, technique, row, column)
+                    count += _add_technique(unweighted, unweighted_sums, technique, row, column)
+                for channel in range(3):
+                    weighted[technique, row, column, channel] = 0.0
+                    unweighted[technique, row, column, channel] = 0.0
+    return count
+
+
+@function
+def _add_technique(images, sums, technique, row, column):
+    count = 0
+    for channel in range(3):
+        value = images[technique, row, column, channel]
+        if math.isfinite(value):
+            sums[technique, row, column, channel] += value
+        else:
+            count += 1
+    return count
+
+
 @dataclass
 class Film:
     """Sums of linear RGB over `iterations`; see `add_rows`."""

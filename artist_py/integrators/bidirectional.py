@@ -10,6 +10,7 @@ from ..core.rng import random_pair, stream_of
 from ..core.spectra import black
 from ..jit import function, kernel
 from ..transport.mis import Partial
+from ..transport.recording import Place
 from ..transport.sensing import store_sample, wavelengths_of_path
 from ..transport.subpath import start_path
 from ..transport.vertices import CHUNK, has_room
@@ -94,7 +95,8 @@ def trace_pair(setup, thread, x, y, image):
     path = start_path(origin, direction, sensing, setup.camera.media)
     density = pdf_camera_direction(setup.camera, setup.method.n_pixels, direction)
     partial = Partial(setup.method.counts.lt / density, 0.0)  # (1.11)
-    eye = trace_eye_subpath(setup, thread, index, stream, wavelengths, path, partial, film_weight)
+    place = Place(row, column, wavelengths, weights * film_weight)
+    eye = trace_eye_subpath(setup, thread, index, stream, place, path, partial, film_weight)
     radiance = eye.radiance * film_weight
     store_sample(sensing, setup.scene.spectra, image, row, column, radiance, wavelengths, weights)
     fetch_and_add(work.progress, RAYS, light.rays + eye.rays)

@@ -14,6 +14,7 @@ from ..jit import function
 from ..scene.tables import ABSORBER
 from ..transport.connect import Connected, connect_to_light, connect_vertices, no_connection
 from ..transport.mis import on_arrival, partial_after, weight_of_hit
+from ..transport.recording import HIT, NEE, VC, record
 from ..transport.roulette import local_survival, survived
 from ..transport.subpath import go_straight, is_passed_through, scatter, vertex_at
 from ..transport.vertices import load_vertex, store_vertex
@@ -21,9 +22,9 @@ from .pair import BSDF, CHOICE, EMITTER, FIRST_VERTEX, PAIRS_PER_VERTEX, ROULETT
 
 
 @function
-def trace_eye_subpath(setup, thread, index, stream, wavelengths, path, partial, film_weight):
+def trace_eye_subpath(setup, thread, index, stream, place, path, partial, film_weight):
     """Radiance along `path` but for merges, whose vertices are stored with the sample's `film_weight`; a `Walk`."""
-    scene, limits, method = setup.scene, setup.limits, setup.method
+    scene, limits, method, wavelengths = setup.scene, setup.limits, setup.method, place.wavelengths
     radiance = black(wavelengths)
     length, rays, shadow_rays = 1, 0, 0
     is_specular, begins_specular = True, True  # all vertices so far; the first one
@@ -39,7 +40,8 @@ def trace_eye_subpath(setup, thread, index, stream, wavelengths, path, partial, 
         arrived = on_arrival(partial, dot(way, way), cos_in)
         is_only_way = is_found_by_hits_only(method.techniques, length, is_specular, begins_specular)
         emitted = emission_hit(scene, method, surface, path, arrived, is_only_way, wavelengths)
-        radiance = radiance + path.throughput * emitted
+        radiance = radiance + path.throughput * emitted.value
+        _record(setup, place, HIT, length, length, path.throughput, emitted)
         if is_passed_through(scene, surface, material, path):
             path = go_straight(scene, surface, material, path)
             continue
@@ -54,7 +56,7 @@ def trace_eye_subpath(setup, thread, index, stream, wavelengths, path, partial, 
             is_specular = False
             begins_specular = begins_specular and length > 1
             joined = connect(
-                setup, index, vertex, partial, survival, length, wavelengths, stream, pair + EMITTER, u_select
+                setup, index, vertex, partial, survival, length, place, path, stream, pair + EMITTER, u_select
             )
             radiance = radiance + path.throughput * joined.value
             shadow_rays += joined.rays
@@ -76,13 +78,22 @@ def trace_eye_subpath(setup, thread, index, stream, wavelengths, path, partial, 
 
 
 @function
-def connect(setup, index, vertex, partial, survival, length, wavelengths, stream, pair, u_select):
+def _record(setup, place, technique, length, eye_length, throughput, found):
+    tables, spectra = setup.stores.techniques, setup.scene.spectra
+    record(
+        tables, spectra, place, technique, length, eye_length, throughput * found.value, found.weight
+    )
+
+
+@function
+def connect(setup, index, vertex, partial, survival, length, place, path, stream, pair, u_select):
     """Next-event estimation and connections at an eye vertex, as far as the method has them; `Connected`."""
-    techniques = setup.method.techniques
+    techniques, wavelengths = setup.method.techniques, place.wavelengths
     u, v = random_pair(stream, pair)
     direct = _next_event(techniques.nee, setup, vertex, partial, survival, wavelengths, u, v, u_select)
-    others = _connect_all(techniques.connect, setup, index, vertex, partial, survival, length, wavelengths)
-    return Connected(direct.value + others.value, direct.rays + others.rays)
+    _record(setup, place, NEE, length + 1, length, path.throughput, direct)
+    others = _connect_all(techniques.connect, setup, index, vertex, partial, survival, length, place, path)
+    return Connected(direct.value + others.value, direct.rays + others.rays, 1.0)
 
 
 @function
@@ -94,8 +105,9 @@ def _next_event(needed, setup, vertex, partial, survival, wavelengths, u, v, u_s
 
 
 @function
-def _connect_all(needed, setup, index, vertex, partial, survival, length, wavelengths):
+def _connect_all(needed, setup, index, vertex, partial, survival, length, place, path):
     """Connections to all vertices of the pixel's light subpaths."""
+    wavelengths = place.wavelengths
     if needed is None:
         return no_connection(wavelengths)
     scene, limits = setup.scene, setup.limits
@@ -114,9 +126,10 @@ def _connect_all(needed, setup, index, vertex, partial, survival, length, wavele
         joined = connect_vertices(
             scene, setup.method.counts, vertex, partial, survival, stored, light_survival, wavelengths
         )
+        _record(setup, place, VC, stored.length + length + 1, length, path.throughput, joined)
         total = total + joined.value
         rays += joined.rays
-    return Connected(total, rays)
+    return Connected(total, rays, 1.0)
 
 
 @function
@@ -158,22 +171,23 @@ def is_found_by_hits_only(techniques, length, is_specular, begins_specular):
 
 @function
 def emission_hit(scene, method, surface, path, partial, is_only_way, wavelengths):
-    """Radiance of an emitter that was hit, with its weight (1.17)."""
+    """Radiance of an emitter that was hit, with its weight (1.17); `Connected`, without a ray."""
     return _emission_hit(scene.emitters, scene, method, surface, path, partial, is_only_way, wavelengths)
 
 
 @function
 def _emission_hit(emitters, scene, method, surface, path, partial, is_only_way, wavelengths):
     if emitters is None:
-        return black(wavelengths)
+        return no_connection(wavelengths)
     if surface.emitter < 0:
-        return black(wavelengths)
+        return no_connection(wavelengths)
     emitter = emitters.records[surface.emitter]
     if not is_emitting_towards(emitter, surface.normal, -path.direction):
-        return black(wavelengths)
+        return no_connection(wavelengths)
     radiance = emitted_radiance(scene.spectra, emitter, wavelengths)
     if not method.hits_everything:
-        return radiance * (1.0 if is_only_way else 0.0)
+        weight = 1.0 if is_only_way else 0.0
+        return Connected(radiance * weight, 0, weight)
     nee_ratio = 0.0
     if path.pdf_solid_angle > 0.0:
         reference = path.reference
@@ -182,4 +196,5 @@ def _emission_hit(emitters, scene, method, surface, path, partial, is_only_way, 
         )
         nee_ratio = density / path.pdf_solid_angle
     emission = pdf_emission_of_hit(scene.needs, scene.geometry, emitter, surface, path.direction)
-    return radiance * weight_of_hit(method.counts, nee_ratio, emission, partial)
+    weight = weight_of_hit(method.counts, nee_ratio, emission, partial)
+    return Connected(radiance * weight, 0, weight)

@@ -3,6 +3,7 @@
 from ..core.rng import stream_of
 from ..core.vector import with_lane
 from ..jit import function, kernel
+from ..transport.recording import LT, Place, record
 from ..transport.sensing import rgb_of, wavelengths_of_path
 from .path_tracing import WAVELENGTH
 
@@ -23,15 +24,24 @@ def add_splats(setup, first, end, image):
                 splat = splats[path.first_splat + i]
                 row = splat.pixel // width
                 if first <= row < end:
-                    _add(scene, image, row, splat.pixel % width, splat, wavelengths, weights)
+                    place = Place(row, splat.pixel % width, wavelengths, weights)
+                    _add(setup.stores.techniques, scene, image, place, splat)
 
 
 @function
-def _add(scene, image, row, column, splat, wavelengths, weights):
-    value = wavelengths
+def _add(tables, scene, image, place, splat):
+    value = place.wavelengths
     for i in range(len(splat.value)):
         value = with_lane(value, i, splat.value[i])
-    red, green, blue = rgb_of(scene.spectra, value * weights, wavelengths)
-    image[row, column, 0] += red
-    image[row, column, 1] += green
-    image[row, column, 2] += blue
+    red, green, blue = rgb_of(scene.spectra, value * place.weights, place.wavelengths)
+    image[place.row, place.column, 0] += red
+    image[place.row, place.column, 1] += green
+    image[place.row, place.column, 2] += blue
+    _record(tables, scene, place, splat, value)
+
+
+@function
+def _record(tables, scene, place, splat, value):
+    if tables is None:
+        return
+    record(tables, scene.spectra, place, LT, splat.length, 0, value, splat.weight)

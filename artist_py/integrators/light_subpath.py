@@ -95,7 +95,7 @@ def _walk(setup, thread, index, stream, wavelengths, emitter, start, path):
         if not is_delta_bsdf(material):
             _store(setup.stores.light, setup.stores.paths, thread, index, surface, path, partial, length)
             shadow_rays += splat(
-                setup, thread, index, vertex, partial, survival, path, wavelengths, stream, pair
+                setup, thread, index, vertex, partial, survival, path, wavelengths, stream, length
             )
         if length + 1 >= limits.max_length or random_number(stream, ROULETTE + length) >= survival:
             break
@@ -149,18 +149,19 @@ def _store(pool, paths, thread, index, surface, path, partial, length):
 
 
 @function
-def splat(setup, thread, index, vertex, partial, survival, path, wavelengths, stream, pair):
+def splat(setup, thread, index, vertex, partial, survival, path, wavelengths, stream, length):
     """Connect a light vertex to the camera, where the method has a light image; returns the number of shadow rays."""
     return _splat(
         setup.method.techniques.light_image, setup, thread, index, vertex, partial, survival, path, wavelengths,
-        stream, pair,
+        stream, length,
     )  # fmt: skip
 
 
 @function
-def _splat(needed, setup, thread, index, vertex, partial, survival, path, wavelengths, stream, pair):
+def _splat(needed, setup, thread, index, vertex, partial, survival, path, wavelengths, stream, length):
     if needed is None:
         return 0
+    stores, pair = setup.stores, FIRST_VERTEX + (length - 1) * PAIRS_PER_VERTEX
     u, v = random_pair(stream, pair + SENSOR)
     sensor = connect_to_lens(setup.camera, setup.method.n_pixels, vertex.surface.position, u, v)
     if sensor.pdf_solid_angle == 0.0:
@@ -173,5 +174,8 @@ def _splat(needed, setup, thread, index, vertex, partial, survival, path, wavele
         setup.scene, setup.method.counts, vertex, partial, survival, sensor, wavelengths
     )
     value = path.throughput * connected.value * (pixel.weight / setup.method.n_light_paths)
-    store_splat(setup.stores.splats, thread, setup.stores.paths[index], pixel.index, value)
+    store_splat(
+        stores.techniques, stores.splats, thread, stores.paths[index], pixel.index, value, length + 1,
+        connected.weight,
+    )  # fmt: skip
     return connected.rays

@@ -4,6 +4,7 @@ from ..core.atomic import fetch_and_add
 from ..core.rng import stream_of
 from ..jit import function, kernel
 from ..transport.merge import merge_at
+from ..transport.recording import Place
 from ..transport.roulette import local_survival
 from ..transport.sensing import rgb_of, wavelengths_of_path
 from ..transport.vertices import CHUNK, load_vertex
@@ -27,16 +28,18 @@ def gather(setup, grid, merging, progress, image):
             record = eye.records[row]
             stored = load_vertex(scene.needs.smooth_triangles, record, sensing.zero)
             survival = local_survival(scene, stored.vertex, wavelengths)
-            merged = merge_at(scene, setup.method, grid, merging, stored, survival, setup.limits, wavelengths)
+            place = Place(record.pixel // width, record.pixel % width, wavelengths, weights)
+            merged = merge_at(
+                scene, setup.method, grid, merging, stored, survival, setup.limits, setup.stores.techniques, place
+            )
             merges += merged.count
-            _add(scene, image, record.pixel, width, stored.throughput * merged.value * weights, wavelengths)
+            _add(scene, image, place, stored.throughput * merged.value)
     fetch_and_add(progress, MERGES, merges)
 
 
 @function
-def _add(scene, image, pixel, width, contribution, wavelengths):
-    red, green, blue = rgb_of(scene.spectra, contribution, wavelengths)
-    row, column = pixel // width, pixel % width
-    image[row, column, 0] += red
-    image[row, column, 1] += green
-    image[row, column, 2] += blue
+def _add(scene, image, place, radiance):
+    red, green, blue = rgb_of(scene.spectra, radiance * place.weights, place.wavelengths)
+    image[place.row, place.column, 0] += red
+    image[place.row, place.column, 1] += green
+    image[place.row, place.column, 2] += blue

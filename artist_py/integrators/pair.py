@@ -9,6 +9,7 @@ from ..core.vector import Spectrum
 from ..jit import function
 from ..scene.tables import Camera, Filter, Scene
 from ..transport.mis import Counts
+from ..transport.recording import TechniqueTables
 from ..transport.roulette import Limits
 from ..transport.sensing import Sensing
 from ..transport.vertices import Pool
@@ -64,6 +65,7 @@ class Stores(NamedTuple):
     splats: Pool | None
     paths: Table  # path_dtype, one row per light subpath
     resume: Table  # int64 (threads, 2): tile (or -1) and pixel in it at which records ran short
+    techniques: TechniqueTables | None  # where contributions are also kept by technique
 
 
 class Setup(NamedTuple):

@@ -16,6 +16,7 @@ from ..geometry.surface import surface_at
 from ..jit import function, kernel
 from ..scene.tables import ABSORBER, Camera, Filter, Scene
 from ..transport.next_event import connect_to_emitter, radiance_of_hit
+from ..transport.recording import HIT, NEE, Place, TechniqueTables, record
 from ..transport.roulette import Limits, after_roulette, is_ended_by_roulette
 from ..transport.sensing import Sensing, store_sample, wavelengths_of_path
 from ..transport.subpath import go_straight, is_passed_through, scatter, start_path, vertex_at
@@ -51,7 +52,14 @@ class Pass(NamedTuple):
 
 @kernel
 def trace_paths(
-    scene: Scene, camera: Camera, pixel_filter: Filter, sensing: Sensing, limits: Limits, work: Pass, image
+    scene: Scene,
+    camera: Camera,
+    pixel_filter: Filter,
+    sensing: Sensing,
+    limits: Limits,
+    work: Pass,
+    image: Table,
+    techniques: TechniqueTables | None,
 ):
     """Take tiles until none is left, trace one path per pixel, store linear RGB in `image` (h, w, 3) float32."""
     x0, x1, y0, y1 = work.crop
@@ -65,14 +73,14 @@ def trace_paths(
         left, top = x0 + (tile % tiles_x) * TILE, y0 + (tile // tiles_x) * TILE
         for y in range(top, min(top + TILE, y1)):
             for x in range(left, min(left + TILE, x1)):
-                traced = trace_pixel(scene, camera, pixel_filter, sensing, limits, work, x, y, image)
+                traced = trace_pixel(scene, camera, pixel_filter, sensing, limits, work, x, y, image, techniques)
                 rays, shadow_rays = rays + traced.rays, shadow_rays + traced.shadow_rays
         fetch_and_add(work.progress, RAYS, rays)
         fetch_and_add(work.progress, SHADOW_RAYS, shadow_rays)
 
 
 @function
-def trace_pixel(scene, camera, pixel_filter, sensing, limits, work, x, y, image):
+def trace_pixel(scene, camera, pixel_filter, sensing, limits, work, x, y, image, techniques):
     """Trace one path through pixel (x, y), store what it brings, and return it."""
     stream = stream_of(work.seed, work.iteration, y * work.width + x, work.stratified_pairs)
     u, v = random_pair(stream, FILM)
@@ -80,8 +88,11 @@ def trace_pixel(scene, camera, pixel_filter, sensing, limits, work, x, y, image)
     lens_u, lens_v = lens_numbers(camera.lens, stream)
     origin, direction = camera_ray(camera, film_x, film_y, lens_u, lens_v)
     wavelengths, weights = wavelengths_of_path(sensing, stream, WAVELENGTH)
-    traced = path_radiance(scene, limits, sensing, stream, wavelengths, origin, direction, camera.media)
     row, column = y - work.crop[2], x - work.crop[0]
+    place = Place(row, column, wavelengths, weights * film_weight)
+    traced = path_radiance(
+        scene, limits, sensing, stream, origin, direction, camera.media, place, techniques
+    )
     store_sample(
         sensing, scene.spectra, image, row, column, traced.radiance * film_weight, wavelengths, weights
     )
@@ -120,8 +131,9 @@ def _numbers_if(alias, dielectric, thin_dielectric, stream, pair):
 
 
 @function
-def path_radiance(scene, limits, sensing, stream, wavelengths, origin, direction, media):
+def path_radiance(scene, limits, sensing, stream, origin, direction, media, place, techniques):
     """`Traced` radiance along the ray, W m^-2 sr^-1 nm^-1 per wavelength, of up to `limits.max_length` edges."""
+    wavelengths = place.wavelengths
     radiance = black(wavelengths)
     path = start_path(origin, direction, sensing, media)
     length, rays, shadow_rays = 1, 0, 0
@@ -131,7 +143,9 @@ def path_radiance(scene, limits, sensing, stream, wavelengths, origin, direction
         if hit.geometry == INVALID_ID:
             break
         surface = surface_at(scene.geometry, scene.needs, path.origin, path.direction, hit)
-        radiance = radiance + path.throughput * radiance_of_hit(scene, surface, path, wavelengths)
+        emitted = radiance_of_hit(scene, surface, path, wavelengths)
+        radiance = radiance + path.throughput * emitted.radiance
+        _record(techniques, scene, place, HIT, length, length, path, emitted)
         material = scene.materials[surface.material]
         if is_passed_through(scene, surface, material, path):
             path = go_straight(scene, surface, material, path)
@@ -144,6 +158,7 @@ def path_radiance(scene, limits, sensing, stream, wavelengths, origin, direction
         if not is_delta_bsdf(material):
             direct = connect_to_emitter(scene, vertex, wavelengths, stream, pair + EMITTER, u_select)
             radiance = radiance + path.throughput * direct.radiance
+            _record(techniques, scene, place, NEE, length + 1, length, path, direct)
             shadow_rays += direct.rays
         path = scatter(scene, vertex, path, wavelengths, stream, pair + BSDF, u_lobe, None).path
         length += 1
@@ -151,3 +166,9 @@ def path_radiance(scene, limits, sensing, stream, wavelengths, origin, direction
             break
         path = after_roulette(limits, length, path)
     return Traced(radiance, rays, shadow_rays)
+
+
+@function
+def _record(tables, scene, place, technique, length, eye_length, path, found):
+    contribution = path.throughput * found.radiance
+    record(tables, scene.spectra, place, technique, length, eye_length, contribution, found.weight)

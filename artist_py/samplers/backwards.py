@@ -12,7 +12,6 @@ from itertools import pairwise
 import numpy as np
 
 from ..core.table import Table
-from ..film.accumulation import add_rows
 from ..integrators.bidirectional import trace_pairs
 from ..integrators.light_image import add_splats
 from ..integrators.merging import MERGES, gather
@@ -43,8 +42,8 @@ def radius_of(first, alpha, iteration):
 class BackwardsSampler(StochasticSampler):
     """Drives a bidirectional method over a film; a context manager, because it owns threads."""
 
-    def __init__(self, compiled, film, threads):
-        super().__init__(compiled, film, threads)
+    def __init__(self, compiled, film, threads, recorder=None):
+        super().__init__(compiled, film, threads, recorder)
         render = compiled.graph.render
         self.method_name, self.merging = render.integrator, render.merging
         self.subset = METHODS[render.integrator]
@@ -56,7 +55,7 @@ class BackwardsSampler(StochasticSampler):
         self.paths = Table(np.zeros(math.ceil(self.n_pixels * self.light_paths) + 1, path_dtype))
         self.light = self._pool(vertex_dtype(self.lanes), self.subset.connect or self.subset.merge)
         self.eye = self._pool(vertex_dtype(self.lanes), self.subset.merge)
-        self.splats = self._pool(splat_dtype(self.lanes), self.subset.light_image)
+        self.splats = self._pool(splat_dtype(self.lanes, recorder is not None), self.subset.light_image)
 
     # --- stores
 
@@ -121,7 +120,9 @@ class BackwardsSampler(StochasticSampler):
         method = method_of(
             self.method_name, self.n_pixels, self.light_paths, van_der_corput(iteration), math.pi * radius**2
         )
-        stores = Stores(self.light, self.eye, self.splats, self.paths, Table(resume))
+        stores = Stores(
+            self.light, self.eye, self.splats, self.paths, Table(resume), self.technique_tables
+        )
         camera, pixel_filter = compiled.camera, compiled.pixel_filter
         return Setup(scene, camera, pixel_filter, sensing, self.limits, work, method, stores), radius
 
@@ -172,7 +173,7 @@ class BackwardsSampler(StochasticSampler):
         """Compile the kernels, or load them from the cache; returns seconds. Says so if it takes a while."""
         image = Table(self.image)
         setup, radius = self._setup(0, np.zeros(4, np.int64), np.full((self.threads, 2), -1, np.int64))
-        calls = [(trace_pairs, (setup, 0, image)), (add_rows, self._rows(0, 0, 0, self._places()))]
+        calls = [(trace_pairs, (setup, 0, image)), *self._film_calls()]
         if self.splats is not None:
             calls.append((add_splats, (setup, 0, 0, image)))
         if self.eye is not None:

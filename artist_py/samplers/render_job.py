@@ -10,9 +10,11 @@ from ..core.table import Table
 from ..errors import OptionError
 from ..film.accumulation import Film
 from ..film.image import FilmImage
+from ..film.techniques import LONGEST, TechniqueImages
 from .aovs import render_aovs
 from .backwards import BackwardsSampler
 from .stochastic import StochasticSampler
+from .techniques import BYTES_PER_VALUE, TechniqueRecorder, techniques_of_render
 
 PROGRESS_SECONDS = 0.25
 BAND_NM = 10
@@ -30,6 +32,8 @@ class RenderSettings:
     spectral: bool = False
     aovs: tuple = ()
     max_memory_bytes: int | None = None
+    techniques: bool = False  # keep an image per technique and path length
+    technique_length: int = LONGEST  # longer paths share an image per kind of technique
 
 
 @dataclass(frozen=True)
@@ -39,6 +43,7 @@ class RenderResult:
     film: FilmImage
     statistics: dict
     interrupted: bool
+    techniques: TechniqueImages | None = None
 
 
 class Silence:
@@ -70,7 +75,8 @@ def render(compiled, settings, observer=None, stop=None):
     for text in compiled.warnings:
         run.observer.warning(text)
     sampler_class = StochasticSampler if compiled.graph.render.integrator == "pt" else BackwardsSampler
-    with sampler_class(compiled, film, settings.threads) as sampler:
+    recorder = _recorder_of(compiled, settings, film)
+    with sampler_class(compiled, film, settings.threads, recorder) as sampler:
         seconds = sampler.compile_kernels(run.observer)
         run.observer.started(_plan(compiled, settings))
         run.begun = run.last_save = time.monotonic()
@@ -81,7 +87,8 @@ def render(compiled, settings, observer=None, stop=None):
         aovs = render_aovs(compiled, sampler, settings, run.observer) if settings.aovs else {}
     image = film_image(compiled, settings, film, aovs)
     statistics = _statistics(run, sampler, film, seconds, cpu)
-    return RenderResult(image, statistics, interrupted)
+    techniques = recorder and recorder.film.images(film.iterations)
+    return RenderResult(image, statistics, interrupted, techniques)
 
 
 def _iterate(run, sampler, film):
@@ -149,6 +156,20 @@ def _film_of(compiled, settings):
     return Film(y1 - y0, x1 - x0, "variance" in settings.aovs, bands)
 
 
+def _recorder_of(compiled, settings, film):
+    if not settings.techniques:
+        return None
+    techniques = techniques_of_render(compiled.graph.render, settings.technique_length)
+    return TechniqueRecorder(techniques, film.height, film.width)
+
+
+def _technique_bytes(compiled, settings, pixels):
+    if not settings.techniques:
+        return 0
+    techniques = techniques_of_render(compiled.graph.render, settings.technique_length)
+    return len(techniques) * pixels * 3 * BYTES_PER_VALUE
+
+
 def memory_estimate(compiled, settings):
     """Bytes that a render needs beyond the interpreter: `{what: bytes}`."""
     x0, x1, y0, y1 = crop_of(compiled.graph)
@@ -160,6 +181,7 @@ def memory_estimate(compiled, settings):
     faces = len(geometry.triangles) + len(geometry.parallelograms)
     return {
         "film": pixels * (12 + 24 + 12 + (24 if "variance" in settings.aovs else 0) + 12 * bands),
+        "techniques": _technique_bytes(compiled, settings, pixels),
         "auxiliary outputs": pixels * 60 if set(settings.aovs) - {"variance"} else 0,
         "geometry": sum(array.nbytes for array in arrays) + (emitters.records.nbytes if emitters else 0),
         "acceleration structure": 110 * faces,

@@ -2,6 +2,7 @@
 
 import time
 from concurrent.futures import ThreadPoolExecutor, wait
+from itertools import pairwise
 
 import numpy as np
 
@@ -23,8 +24,8 @@ COMPILE_SECONDS_HINT = 15
 class StochasticSampler:
     """Drives the path tracer over a film; a context manager, because it owns threads."""
 
-    def __init__(self, compiled, film, threads):
-        self.compiled, self.film, self.threads = compiled, film, threads
+    def __init__(self, compiled, film, threads, recorder=None):
+        self.compiled, self.film, self.threads, self.recorder = compiled, film, threads, recorder
         graph = compiled.graph
         render, (width, height) = graph.render, graph.film.resolution
         self.crop = tuple(graph.film.crop or (0, width, 0, height))
@@ -67,7 +68,13 @@ class StochasticSampler:
         compiled = self.compiled
         scene, sensing = self.scene_and_sensing(iteration, self.bands)
         work = Pass(self.seed, iteration, self.stratified_pairs, self.crop, self.width, Table(progress))
-        return scene, compiled.camera, compiled.pixel_filter, sensing, self.limits, work, Table(self.image)
+        camera, pixel_filter, image = compiled.camera, compiled.pixel_filter, Table(self.image)
+        return scene, camera, pixel_filter, sensing, self.limits, work, image, self.technique_tables
+
+    @property
+    def technique_tables(self):
+        """Where kernels keep what each technique brings, or `None`."""
+        return self.recorder and self.recorder.tables
 
     def scene_and_sensing(self, iteration, bands):
         """The scene's tables and the sensor at the wavelengths of `iteration`."""
@@ -96,6 +103,9 @@ class StochasticSampler:
         for count, where in zip(self.run(jobs), places, strict=True):
             if count:
                 film.reject(count, where, (self.crop[0], self.crop[2]), iteration)
+        if self.recorder is not None:
+            jobs = [self.recorder.add_job(self.image, *rows) for rows in pairwise(edges)]
+            self.recorder.film.rejected_count += sum(self.run(jobs))
         film.iterations += 1
 
     @staticmethod
@@ -127,9 +137,16 @@ class StochasticSampler:
         """Compile the kernels, or load them from the cache; returns seconds. Says so if it takes a while."""
         calls = [
             (trace_paths, self._arguments(0, np.zeros(4, np.int64))),
-            (add_rows, self._rows(0, 0, 0, self._places())),
+            *self._film_calls(),
         ]
         return self.compile_calls(calls, observer)
+
+    def _film_calls(self):
+        """`(kernel, arguments)` of the film's kernels, to be compiled."""
+        calls = [(add_rows, self._rows(0, 0, 0, self._places()))]
+        if self.recorder is not None:
+            calls.append(self.recorder.add_job(self.image, 0, 0))
+        return calls
 
     def compile_calls(self, calls, observer):
         """Compile each `(kernel, arguments)` for the types of its arguments."""

@@ -53,16 +53,17 @@ def is_blocked(scene, surface, towards, end):
 
 
 class Connected(NamedTuple):
-    """What a connection brings, weighted, and the shadow rays it took."""
+    """What a connection brings, weighted, the shadow rays it took, and the weight: 0 if it brings nothing."""
 
     value: Spectrum
     rays: int
+    weight: float
 
 
 @function
 def no_connection(wavelengths):
     """A connection that brings nothing and took no ray."""
-    return Connected(black(wavelengths), 0)
+    return Connected(black(wavelengths), 0, 0.0)
 
 
 @function
@@ -88,7 +89,7 @@ def _to_light(emitters, scene, counts, vertex, partial, survival, wavelengths, u
     if there.is_black:
         return nothing
     if is_blocked(scene, vertex.surface, wi, end):
-        return Connected(black(wavelengths), 1)
+        return Connected(black(wavelengths), 1, 0.0)
     pdf_light = point.pdf_solid_angle * emitter.pdf_select
     emission = emission_over_next_event(scene.needs, scene.geometry, emitter, point, towards, pdf_light)
     weight = weight_of_next_event(
@@ -98,7 +99,7 @@ def _to_light(emitters, scene, counts, vertex, partial, survival, wavelengths, u
         bracket(counts, partial, there.pdf_rev),
     )
     radiance = emitted_radiance(scene.spectra, emitter, wavelengths)
-    return Connected(radiance * there.f_cos * (weight / pdf_light), 1)
+    return Connected(radiance * there.f_cos * (weight / pdf_light), 1, weight)
 
 
 @function
@@ -117,7 +118,7 @@ def connect_vertices(scene, counts, eye, eye_partial, eye_survival, light, light
     if there.is_black:
         return nothing
     if is_blocked(scene, eye.surface, wi, leave_surface(light.vertex.surface, -wi)):
-        return Connected(black(wavelengths), 1)
+        return Connected(black(wavelengths), 1, 0.0)
     weight = weight_of_connection(
         counts,
         here.pdf_fwd * there.cos_theta / distance_squared,
@@ -126,7 +127,7 @@ def connect_vertices(scene, counts, eye, eye_partial, eye_survival, light, light
         bracket(counts, eye_partial, here.pdf_rev),
     )
     value = light.throughput * here.f_cos * there.f_cos * (weight / (counts.vc * distance_squared))
-    return Connected(value, 1)
+    return Connected(value, 1, weight)
 
 
 @function
@@ -139,7 +140,7 @@ def connect_to_camera(scene, counts, vertex, partial, survival, sensor, waveleng
     if there.is_black:
         return nothing
     if is_blocked(scene, vertex.surface, wi, sensor.position):
-        return Connected(black(wavelengths), 1)
+        return Connected(black(wavelengths), 1, 0.0)
     camera_density = sensor.pdf_solid_angle * there.cos_theta / distance_squared
     weight = weight_of_light_image(counts, camera_density, bracket(counts, partial, there.pdf_rev))
-    return Connected(there.f_cos * (weight * sensor.importance / distance_squared), 1)
+    return Connected(there.f_cos * (weight * sensor.importance / distance_squared), 1, weight)

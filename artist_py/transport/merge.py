@@ -10,6 +10,7 @@ from ..core.vector import Spectrum, dot
 from ..jit import function
 from .mis import Partial, bracket, weight_of_merge
 from .photon_grid import bucket_of, cell_of
+from .recording import VM, record
 from .subpath import is_on_side
 from .vertices import load_throughput
 
@@ -32,8 +33,12 @@ class Merged(NamedTuple):
 
 
 @function
-def merge_at(scene, method, grid, merging, stored, survival, limits, wavelengths):
-    """Sum over the photons within the radius of the stored eye vertex, each with its weight (1.14)."""
+def merge_at(scene, method, grid, merging, stored, survival, limits, tables, place):
+    """Sum over the photons within the radius of the stored eye vertex, each with its weight (1.14).
+
+    Each is also noted in the `TechniqueTables`, if there are any.
+    """
+    wavelengths = place.wavelengths
     total, count = black(wavelengths), 0
     p = stored.vertex.surface.position
     i, j, k = _lower_cell(p.x, grid.cell), _lower_cell(p.y, grid.cell), _lower_cell(p.z, grid.cell)
@@ -44,8 +49,14 @@ def merge_at(scene, method, grid, merging, stored, survival, limits, wavelengths
             for row in range(grid.starts[bucket], grid.starts[bucket + 1]):
                 photon = grid.photons[row]
                 if _is_near(photon, p, merging.radius) and photon.length + stored.length <= limits.max_length:
-                    total = total + _merge(scene, method, photon, stored, survival, wavelengths)
+                    merged = _merge(scene, method, photon, stored, survival, wavelengths)
+                    total = total + merged.value
                     count += 1
+                    length = photon.length + stored.length
+                    contribution = stored.throughput * merged.value * merging.normalization
+                    record(
+                        tables, scene.spectra, place, VM, length, stored.length, contribution, merged.weight
+                    )
     return Merged(total * merging.normalization, count)
 
 
@@ -70,6 +81,13 @@ def _is_near(photon, p, radius):
     return dx * dx + dy * dy + dz * dz <= radius * radius
 
 
+class MergedPhoton(NamedTuple):
+    """What one photon brings per eye throughput and density, weighted, and the weight."""
+
+    value: Spectrum
+    weight: float
+
+
 @function
 def _merge(scene, method, photon, stored, survival, wavelengths):
     vertex = stored.vertex
@@ -79,13 +97,13 @@ def _merge(scene, method, photon, stored, survival, wavelengths):
     material = scene.materials[vertex.surface.material]
     pdf = pdf_bsdf(scene.needs, material, vertex.wo, wi)
     if pdf == 0.0 or abs(dot(normal, vertex.surface.normal)) < MIN_NORMAL_COSINE:
-        return black(wavelengths)
+        return MergedPhoton(black(wavelengths), 0.0)
     if not is_on_side(scene.needs.smooth_triangles, vertex.surface, direction, wi):
-        return black(wavelengths)
+        return MergedPhoton(black(wavelengths), 0.0)
     f = evaluate_bsdf(scene.needs, material, scene.spectra, wavelengths, vertex.wo, wi)
     weight = _weight(method.techniques.merge_once, scene, method, photon, stored, material, wi, pdf, survival)
     shading = _shading_factor(scene.needs.smooth_triangles, normal, direction, wi)
-    return load_throughput(photon, wavelengths) * f * (weight * shading)
+    return MergedPhoton(load_throughput(photon, wavelengths) * f * (weight * shading), weight)
 
 
 @function

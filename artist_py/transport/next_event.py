@@ -23,10 +23,11 @@ from .subpath import is_on_side
 
 
 class Connection(NamedTuple):
-    """What a connection brings, and how many shadow rays it took."""
+    """What a connection or a hit brings, how many shadow rays it took, and the MIS weight it holds."""
 
     radiance: Spectrum
     rays: int
+    weight: float
 
 
 @function
@@ -41,33 +42,34 @@ def connect_to_emitter(scene, vertex, wavelengths, stream, pair, u_select):
 @function
 def _connect(emitters, scene, vertex, wavelengths, stream, pair, u_select):
     if emitters is None:
-        return Connection(black(wavelengths), 0)
+        return Connection(black(wavelengths), 0, 0.0)
     material = scene.materials[vertex.surface.material]
     emitter = emitters.records[choose_emitter(emitters.alias, u_select)]
     u, v = random_pair(stream, pair)
     point = sample_emitter(scene.needs, scene.geometry, emitter, vertex.surface.position, u, v)
     towards = point.position - vertex.surface.position
     if point.pdf_solid_angle == 0.0 or not is_emitting_towards(emitter, point.normal, -towards):
-        return Connection(black(wavelengths), 0)
+        return Connection(black(wavelengths), 0, 0.0)
     wi_world = towards * (1.0 / math.sqrt(dot(towards, towards)))
     wi = to_local(vertex.frame, wi_world)
     pdf_scatter = pdf_bsdf(scene.needs, material, vertex.wo, wi)
     if pdf_scatter == 0.0 or not is_on_side(scene.needs.smooth_triangles, vertex.surface, wi_world, wi):
-        return Connection(black(wavelengths), 0)
+        return Connection(black(wavelengths), 0, 0.0)
     start = leave_surface(vertex.surface, wi_world)
     end = offset_position(point.position, point.normal, point.extent, -wi_world)
     if is_occluded(scene.geometry.embree, start, end - start, 1.0):
-        return Connection(black(wavelengths), 1)
+        return Connection(black(wavelengths), 1, 0.0)
     f = evaluate_bsdf(scene.needs, material, scene.spectra, wavelengths, vertex.wo, wi)
     pdf_light = point.pdf_solid_angle * emitter.pdf_select
     # The balance heuristic over the density: w / p = 1 / (p + p').
     weight = abs(wi.z) / (pdf_light + pdf_scatter)
-    return Connection(emitted_radiance(scene.spectra, emitter, wavelengths) * f * weight, 1)
+    radiance = emitted_radiance(scene.spectra, emitter, wavelengths) * f * weight
+    return Connection(radiance, 1, balance(pdf_light, pdf_scatter))
 
 
 @function
 def radiance_of_hit(scene, surface, path, wavelengths):
-    """Radiance that the surface hit by `path` emits against it, with the MIS weight of having been hit.
+    """Radiance that the surface hit by `path` emits against it, with the MIS weight of having been hit: a `Connection`.
 
     The weight is 1 where no emitter could have been sampled: behind the camera and delta lobes.
     """
@@ -77,16 +79,17 @@ def radiance_of_hit(scene, surface, path, wavelengths):
 @function
 def _of_hit(emitters, scene, surface, path, wavelengths):
     if emitters is None:
-        return black(wavelengths)
+        return Connection(black(wavelengths), 0, 0.0)
     if surface.emitter < 0:
-        return black(wavelengths)
+        return Connection(black(wavelengths), 0, 0.0)
     emitter = emitters.records[surface.emitter]
     if not is_emitting_towards(emitter, surface.normal, -path.direction):
-        return black(wavelengths)
+        return Connection(black(wavelengths), 0, 0.0)
     radiance = emitted_radiance(scene.spectra, emitter, wavelengths)
     if path.pdf_solid_angle == 0.0:
-        return radiance
+        return Connection(radiance, 0, 1.0)
     pdf_light = pdf_emitter(
         scene.needs, scene.geometry, emitter, path.reference, surface.position, surface.normal
     )
-    return radiance * balance(path.pdf_solid_angle, pdf_light)
+    weight = balance(path.pdf_solid_angle, pdf_light)
+    return Connection(radiance * weight, 0, weight)

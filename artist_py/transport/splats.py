@@ -11,9 +11,10 @@ from ..jit import function
 PROFILE_STEPS = 256  # samples of the filter per pixel
 
 
-def splat_dtype(lanes):
-    """Layout of a splat of `lanes` wavelengths."""
-    return np.dtype([("pixel", "i4"), ("value", "f4", lanes)], align=True)
+def splat_dtype(lanes, with_technique=False):
+    """Layout of a splat of `lanes` wavelengths; `with_technique` adds what images of techniques need."""
+    technique = [("length", "i4"), ("weight", "f4")] if with_technique else []
+    return np.dtype([("pixel", "i4"), ("value", "f4", lanes), *technique], align=True)
 
 
 class ChosenPixel(NamedTuple):
@@ -67,12 +68,24 @@ def _value(profile, offset):
 
 
 @function
-def store_splat(pool, thread, record, pixel, value):
-    """Append a splat to those of the light subpath `record`; room has been made sure of."""
+def store_splat(tables, pool, thread, record, pixel, value, length, weight):
+    """Append a splat to those of the light subpath `record`; room has been made sure of.
+
+    The number of edges of its path and its MIS weight are kept for the `TechniqueTables`, if there are any.
+    """
     row = pool.ends[thread, 0]
     pool.ends[thread, 0] = row + 1
     splat = pool.records[row]
     splat.pixel = pixel
     for i in range(lane_count(value)):
         splat.value[i] = lane(value, i)
+    _store_technique(tables, splat, length, weight)
     record.n_splats += 1
+
+
+@function
+def _store_technique(tables, splat, length, weight):
+    if tables is None:
+        return
+    splat.length = length
+    splat.weight = weight

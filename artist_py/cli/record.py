@@ -16,8 +16,8 @@ class Record:
     )
     outputs: Any
 
-    def write(self, film, statistics, *, complete):
-        """Write images and statistics; OutputError if that fails."""
+    def write(self, film, statistics, *, complete, techniques=None):
+        """Write images and statistics, and `TechniqueImages` where there are any; OutputError if that fails."""
         metadata = {name.removeprefix("artist:"): value for name, value in self.metadata.items()}
         sidecar = {
             "software": f"artist {__version__}",
@@ -30,6 +30,7 @@ class Record:
             "rejected": [dict(zip(("x", "y", "iteration"), place, strict=True)) for place in film.rejected],
         }
         self.outputs.write(film, self.metadata, sidecar)
+        self.outputs.write_techniques(film, techniques, self.metadata)
 
 
 def exr_metadata(graph, budget):

@@ -69,6 +69,18 @@ OPTIONS = (
         help="Channels to add to the EXR: any of normal, shading_normal, albedo, depth, position, material, variance.",
     ),
     click.Option(
+        ["--techniques"],
+        is_flag=True,
+        help="Write what each technique brings, with and without its weight, to a directory OUTPUT.techniques: an EXR "
+        "per path length, contact sheets, and merging (red) against connection (blue).",
+    ),
+    click.Option(
+        ["--technique-length"],
+        type=click.IntRange(min=1),
+        metavar="N",
+        help="With --techniques: longer paths share an image per kind of technique. Default: 8.",
+    ),
+    click.Option(
         ["--set", "settings"],
         type=Setting(),
         multiple=True,
@@ -105,7 +117,10 @@ def _outputs(options):
     from artist_py.film.tonemap import ToneMapping
 
     paths = options["output"] or [f"{Path(options['scene']).stem}.exr"]
-    outputs = Outputs(paths, ToneMapping(exposure=options["exposure"], bits=options["bits"]))
+    mapping = ToneMapping(exposure=options["exposure"], bits=options["bits"])
+    outputs = Outputs(paths, mapping, options["techniques"])
+    if options["technique_length"] and not options["techniques"]:
+        raise click.UsageError("--technique-length needs --techniques")
     for name, option in (
         ("aovs", "--aov"),
         ("spectral", "--spectral"),
@@ -136,6 +151,7 @@ def _budget(render, options):
 
 
 def _render(graph, budget, outputs, options):
+    from artist_py.film.techniques import LONGEST
     from artist_py.samplers.render_job import RenderSettings, render
     from artist_py.scene.compile import compile_scene
 
@@ -147,6 +163,8 @@ def _render(graph, budget, outputs, options):
         spectral=options["spectral"],
         aovs=tuple(dict.fromkeys(name for names in options["aovs"] for name in names)),
         max_memory_bytes=options["max_memory"],
+        techniques=options["techniques"],
+        technique_length=options["technique_length"] or LONGEST,
     )
     record = Record(options["scene"], exr_metadata(graph, budget), outputs)
     save = partial(record.write, statistics={}, complete=False)
@@ -168,7 +186,7 @@ def _finish(result, seconds, record, observer):
     if film.iterations == 0:
         observer.warning("interrupted before the first iteration was done: nothing was written")
         return INTERRUPTED
-    record.write(film, result.statistics, complete=not result.interrupted)
+    record.write(film, result.statistics, complete=not result.interrupted, techniques=result.techniques)
     n_rejected = max(film.rejected_count, len(film.rejected))
     if n_rejected:
         observer.warning(f"{n_rejected} contributions were not finite and were dropped; the .json says where")

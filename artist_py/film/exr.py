@@ -4,7 +4,6 @@ import json
 
 import numpy as np
 
-from artist_py.film.channels import film_channels
 from artist_py.film.color import PRIMARIES_XY, WHITE_XY
 from artist_py.version import __version__
 
@@ -15,9 +14,8 @@ EMISSIVE_UNITS = "W.m^-2.sr^-1.nm^-1"
 INT32 = range(-(2**31), 2**31)
 
 
-def exr_pixels(film):
-    """Channel names and their values, (height, width, n_channels) float32."""
-    channels = film_channels(film)
+def exr_pixels(channels):
+    """Names of `(name, plane)` channels and their values, (height, width, n_channels) float32."""
     names = tuple(name for name, _ in channels)
     return names, np.stack([plane.astype(np.float32) for _, plane in channels], axis=-1)
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from artist_py.errors import OutputError
+from artist_py.film.channels import film_channels
 from artist_py.film.exr import FIXED_TIME, exr_pixels, exr_spec
 from artist_py.film.replacing import check_replaceable, replacing
 from artist_py.film.tonemap import ToneMapping, tone_mapped
@@ -26,7 +27,15 @@ def write_image(path, film, metadata=None, tone_mapping=None):
     if image_extension(path) == ".png":
         write_display(path, film.rgb, tone_mapping or ToneMapping())
         return
-    names, pixels = exr_pixels(film)
+    write_channels(path, film, film_channels(film), metadata)
+
+
+def write_channels(path, film, channels, metadata=None):
+    """Write `(name, plane)` of each channel, planes (height, width), as an EXR of the render `film`.
+
+    Metadata and errors as in `write_image`.
+    """
+    names, pixels = exr_pixels(channels)
     _write(path, "openexr", exr_spec(film, names, metadata or {}), pixels)
 
 

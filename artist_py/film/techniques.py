@@ -34,6 +34,15 @@ class Technique:
             return f"vc_s{self.s}_t{self.t}"
         return self.kind if self.m is None else f"vm_m{self.m}"
 
+    @property
+    def title(self):
+        """Its name in words, such as `connect 2+3`: s light and t eye vertices."""
+        if self.kind == "vc":
+            return "connect" if self.s is None else f"connect {self.s}+{self.t}"
+        if self.kind == "vm":
+            return "merge" if self.m is None else f"merge at {self.m}"
+        return {"hit": "hit", "nee": "next event", "lt": "light image"}[self.kind]
+
 
 def techniques_of(kinds, max_path_length, longest=LONGEST):
     """All techniques of these kinds, by length, those for paths longer than `longest` last."""
@@ -62,7 +71,9 @@ class TechniqueFilm:
     techniques: tuple
     height: int
     width: int
-    rejected_count: int = 0  # values that were finite only with their weights, and are missing in `unweighted`
+    rejected_count: int = (
+        0  # values that were finite only with their weights, and are missing in `unweighted`
+    )
 
     def __post_init__(self):
         shape = (len(self.techniques), self.height, self.width, 3)
@@ -80,7 +91,8 @@ class TechniqueImages:
     """Mean images of all techniques, linear sRGB, float64 (n, h, w, 3) in the order of `techniques`.
 
     The sum of `weighted` is the rendered image; each of `unweighted` is what the image of its path length looks like to
-    this technique alone, without the paths that it cannot find.
+    this technique alone, without the paths that it cannot find. (Where longer paths share an image, it is the sum of
+    several such estimates.)
     """
 
     techniques: tuple

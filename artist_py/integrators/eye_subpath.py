@@ -80,9 +80,7 @@ def trace_eye_subpath(setup, thread, index, stream, place, path, partial, film_w
 @function
 def _record(setup, place, technique, length, eye_length, throughput, found):
     tables, spectra = setup.stores.techniques, setup.scene.spectra
-    record(
-        tables, spectra, place, technique, length, eye_length, throughput * found.value, found.weight
-    )
+    record(tables, spectra, place, technique, length, eye_length, throughput * found.value, found.weight)
 
 
 @function

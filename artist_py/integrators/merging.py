@@ -30,7 +30,15 @@ def gather(setup, grid, merging, progress, image):
             survival = local_survival(scene, stored.vertex, wavelengths)
             place = Place(record.pixel // width, record.pixel % width, wavelengths, weights)
             merged = merge_at(
-                scene, setup.method, grid, merging, stored, survival, setup.limits, setup.stores.techniques, place
+                scene,
+                setup.method,
+                grid,
+                merging,
+                stored,
+                survival,
+                setup.limits,
+                setup.stores.techniques,
+                place,
             )
             merges += merged.count
             _add(scene, image, place, stored.throughput * merged.value)

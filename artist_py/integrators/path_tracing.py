@@ -73,7 +73,9 @@ def trace_paths(
         left, top = x0 + (tile % tiles_x) * TILE, y0 + (tile // tiles_x) * TILE
         for y in range(top, min(top + TILE, y1)):
             for x in range(left, min(left + TILE, x1)):
-                traced = trace_pixel(scene, camera, pixel_filter, sensing, limits, work, x, y, image, techniques)
+                traced = trace_pixel(
+                    scene, camera, pixel_filter, sensing, limits, work, x, y, image, techniques
+                )
                 rays, shadow_rays = rays + traced.rays, shadow_rays + traced.shadow_rays
         fetch_and_add(work.progress, RAYS, rays)
         fetch_and_add(work.progress, SHADOW_RAYS, shadow_rays)
@@ -90,9 +92,7 @@ def trace_pixel(scene, camera, pixel_filter, sensing, limits, work, x, y, image,
     wavelengths, weights = wavelengths_of_path(sensing, stream, WAVELENGTH)
     row, column = y - work.crop[2], x - work.crop[0]
     place = Place(row, column, wavelengths, weights * film_weight)
-    traced = path_radiance(
-        scene, limits, sensing, stream, origin, direction, camera.media, place, techniques
-    )
+    traced = path_radiance(scene, limits, sensing, stream, origin, direction, camera.media, place, techniques)
     store_sample(
         sensing, scene.spectra, image, row, column, traced.radiance * film_weight, wavelengths, weights
     )

@@ -120,9 +120,7 @@ class BackwardsSampler(StochasticSampler):
         method = method_of(
             self.method_name, self.n_pixels, self.light_paths, van_der_corput(iteration), math.pi * radius**2
         )
-        stores = Stores(
-            self.light, self.eye, self.splats, self.paths, Table(resume), self.technique_tables
-        )
+        stores = Stores(self.light, self.eye, self.splats, self.paths, Table(resume), self.technique_tables)
         camera, pixel_filter = compiled.camera, compiled.pixel_filter
         return Setup(scene, camera, pixel_filter, sensing, self.limits, work, method, stores), radius
 

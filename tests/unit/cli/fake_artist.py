@@ -29,6 +29,8 @@ class RenderSettings:
     spectral: bool = False
     aovs: tuple = ()
     max_memory_bytes: int | None = None
+    techniques: bool = False
+    technique_length: int = 8
 
 
 def compile_scene(graph, threads=None):
@@ -96,7 +98,10 @@ def render(compiled, settings, observer, stop=None):
     }
     interrupted = stop is not None and stop.is_set()
     return types.SimpleNamespace(
-        film=film_of(compiled, settings, done), statistics=statistics, interrupted=interrupted
+        film=film_of(compiled, settings, done),
+        statistics=statistics,
+        interrupted=interrupted,
+        techniques=None,
     )
 
 

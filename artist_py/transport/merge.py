@@ -13,15 +13,15 @@ from .photon_grid import bucket_of, cell_of
 from .subpath import is_on_side
 from .vertices import load_throughput
 
-# Photons on surfaces that face elsewhere are not of this surface: they would leak through edges and thin walls.
-MIN_NORMAL_COSINE = 0.4
-
 
 class Merging(NamedTuple):
     """Constants of an iteration's merges."""
 
     radius: float  # render-space units
     normalization: float  # 1 / (pi r^2 N_L)
+    # Photons on surfaces that face elsewhere are not of this surface: they would leak through edges and thin walls.
+    min_normal_cosine: float
+    epanechnikov: bool | None  # K = 2 (1 - d^2 / r^2) / (pi r^2) instead of the constant kernel 1 / (pi r^2)
 
 
 class Merged(NamedTuple):
@@ -43,8 +43,10 @@ def merge_at(scene, method, grid, merging, stored, survival, limits, wavelengths
         if not _is_visited(i, j, k, corner, bucket, buckets):
             for row in range(grid.starts[bucket], grid.starts[bucket + 1]):
                 photon = grid.photons[row]
-                if _is_near(photon, p, merging.radius) and photon.length + stored.length <= limits.max_length:
-                    total = total + _merge(scene, method, photon, stored, survival, wavelengths)
+                distance_squared = _distance_squared(photon, p) / (merging.radius * merging.radius)
+                if distance_squared <= 1.0 and photon.length + stored.length <= limits.max_length:
+                    value = _merge(scene, method, merging, photon, stored, survival, wavelengths)
+                    total = total + value * _kernel(merging.epanechnikov, distance_squared)
                     count += 1
     return Merged(total * merging.normalization, count)
 
@@ -65,20 +67,28 @@ def _is_visited(i, j, k, corner, bucket, buckets):
 
 
 @function
-def _is_near(photon, p, radius):
+def _distance_squared(photon, p):
     dx, dy, dz = photon.position[0] - p.x, photon.position[1] - p.y, photon.position[2] - p.z
-    return dx * dx + dy * dy + dz * dz <= radius * radius
+    return dx * dx + dy * dy + dz * dz
 
 
 @function
-def _merge(scene, method, photon, stored, survival, wavelengths):
+def _kernel(epanechnikov, distance_squared):
+    """The kernel over 1 / (pi r^2), at a distance in radii; weights keep the area pi r^2 for either (theory 1.2)."""
+    if epanechnikov is None:
+        return 1.0
+    return 2.0 * (1.0 - distance_squared)
+
+
+@function
+def _merge(scene, method, merging, photon, stored, survival, wavelengths):
     vertex = stored.vertex
     normal = load_vec3(photon.normal)
     direction = load_vec3(photon.direction)
     wi = to_local(vertex.frame, direction)
     material = scene.materials[vertex.surface.material]
     pdf = pdf_bsdf(scene.needs, material, vertex.wo, wi)
-    if pdf == 0.0 or abs(dot(normal, vertex.surface.normal)) < MIN_NORMAL_COSINE:
+    if pdf == 0.0 or abs(dot(normal, vertex.surface.normal)) < merging.min_normal_cosine:
         return black(wavelengths)
     if not is_on_side(scene.needs.smooth_triangles, vertex.surface, direction, wi):
         return black(wavelengths)

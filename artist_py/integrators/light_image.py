@@ -3,7 +3,7 @@
 from ..core.rng import stream_of
 from ..core.vector import with_lane
 from ..jit import function, kernel
-from ..transport.sensing import rgb_of, wavelengths_of_path
+from ..transport.sensing import add_sample, wavelengths_of_path
 from .path_tracing import WAVELENGTH
 
 
@@ -23,15 +23,13 @@ def add_splats(setup, first, end, image):
                 splat = splats[path.first_splat + i]
                 row = splat.pixel // width
                 if first <= row < end:
-                    _add(scene, image, row, splat.pixel % width, splat, wavelengths, weights)
+                    value = _value(splat, wavelengths) * weights
+                    add_sample(sensing, scene.spectra, image, row, splat.pixel % width, value, wavelengths)
 
 
 @function
-def _add(scene, image, row, column, splat, wavelengths, weights):
-    value = wavelengths
+def _value(splat, zero):
+    value = zero
     for i in range(len(splat.value)):
         value = with_lane(value, i, splat.value[i])
-    red, green, blue = rgb_of(scene.spectra, value * weights, wavelengths)
-    image[row, column, 0] += red
-    image[row, column, 1] += green
-    image[row, column, 2] += blue
+    return value

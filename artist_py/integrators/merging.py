@@ -2,10 +2,10 @@
 
 from ..core.atomic import fetch_and_add
 from ..core.rng import stream_of
-from ..jit import function, kernel
+from ..jit import kernel
 from ..transport.merge import merge_at
 from ..transport.roulette import local_survival
-from ..transport.sensing import rgb_of, wavelengths_of_path
+from ..transport.sensing import add_sample, wavelengths_of_path
 from ..transport.vertices import CHUNK, load_vertex
 
 NEXT_CHUNK, MERGES = range(2)  # in progress
@@ -23,20 +23,13 @@ def gather(setup, grid, merging, progress, image):
         chunk = fetch_and_add(progress, NEXT_CHUNK, 1)
         if chunk >= eye.state[0]:
             break
-        for row in range(chunk * CHUNK, chunk * CHUNK + eye.used[chunk]):
-            record = eye.records[row]
+        for index in range(chunk * CHUNK, chunk * CHUNK + eye.used[chunk]):
+            record = eye.records[index]
             stored = load_vertex(scene.needs.smooth_triangles, record, sensing.zero)
             survival = local_survival(scene, stored.vertex, wavelengths)
             merged = merge_at(scene, setup.method, grid, merging, stored, survival, setup.limits, wavelengths)
             merges += merged.count
-            _add(scene, image, record.pixel, width, stored.throughput * merged.value * weights, wavelengths)
+            value = stored.throughput * merged.value * weights
+            row, column = record.pixel // width, record.pixel % width
+            add_sample(sensing, scene.spectra, image, row, column, value, wavelengths)
     fetch_and_add(progress, MERGES, merges)
-
-
-@function
-def _add(scene, image, pixel, width, contribution, wavelengths):
-    red, green, blue = rgb_of(scene.spectra, contribution, wavelengths)
-    row, column = pixel // width, pixel % width
-    image[row, column, 0] += red
-    image[row, column, 1] += green
-    image[row, column, 2] += blue

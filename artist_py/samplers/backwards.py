@@ -23,10 +23,10 @@ from ..transport.merge import Merging
 from ..transport.photon_grid import Grid, count_photons, photon_dtype, place_photons
 from ..transport.splats import splat_dtype
 from ..transport.vertices import CHUNK, NEXT_CHUNK, SHORTAGE, Pool, vertex_dtype
+from .memory import RECORDS_PER_PATH
 from .stochastic import StochasticSampler
 from .wavelengths import van_der_corput
 
-RECORDS_PER_PATH = 4  # to begin with; pools that run short grow by half
 SMALLEST_RADIUS = 1e-7  # of the scene's radius: below, float32 positions decide what is near
 
 
@@ -46,16 +46,16 @@ def radius_of(first, alpha, iteration, schedule="knaus-zwicker"):
 class BackwardsSampler(StochasticSampler):
     """Drives a bidirectional method over a film; a context manager, because it owns threads."""
 
-    def __init__(self, compiled, film, threads):
+    def __init__(self, compiled, film, threads, light_paths):
         super().__init__(compiled, film, threads)
         render = compiled.graph.render
         self.method_name, self.merging = render.integrator, render.merging
         self.subset = METHODS[render.integrator]
         self.n_pixels = film.width * film.height
-        self.light_paths = render.merging.light_paths
+        self.light_paths = light_paths  # per pixel
         self.lanes = render.hero_count
-        self.merges = 0
-        self.phases = dict.fromkeys(("subpaths", "photon_grid", "merging", "film"), 0.0)
+        self.counts = {"light_vertices": 0, "eye_vertices": 0, "merges": 0}
+        self.phases = dict.fromkeys(("subpaths", "photon_grid", "merging", "light_image", "film"), 0.0)
         self.paths = Table(np.zeros(math.ceil(self.n_pixels * self.light_paths) + 1, path_dtype))
         self.light = self._pool(vertex_dtype(self.lanes), self.subset.connect or self.subset.merge)
         self.eye = self._pool(vertex_dtype(self.lanes), self.subset.merge)
@@ -175,7 +175,9 @@ class BackwardsSampler(StochasticSampler):
         merging = self._merging(setup, radius)
         progress = np.zeros(2, np.int64)
         self.run([(gather, (setup, grid, merging, Table(progress), Table(self.image)))] * self.threads)
-        self.merges += int(progress[MERGES])
+        self.counts["light_vertices"] += len(grid.photons)
+        self.counts["eye_vertices"] += int(self.eye.used.array.sum())
+        self.counts["merges"] += int(progress[MERGES])
         self.phases["photon_grid"] += sorted_at - begun
         self.phases["merging"] += time.monotonic() - sorted_at
 
@@ -185,7 +187,7 @@ class BackwardsSampler(StochasticSampler):
         begun = time.monotonic()
         edges = np.linspace(0, self.film.height, self.threads + 1).astype(int).tolist()
         self.run([(add_splats, (setup, *rows, Table(self.image))) for rows in pairwise(edges)])
-        self.phases["film"] += time.monotonic() - begun
+        self.phases["light_image"] += time.monotonic() - begun
 
     # --- compilation
 

@@ -33,7 +33,8 @@ class StochasticSampler:
         self.stratified_pairs = STRATIFIED_PAIRS if render.sampler == "sobol" else 0
         self.image = np.zeros((film.height, film.width, 3), np.float32)
         self.bands = self._bands()
-        self.rays = (0, 0)
+        self.rays = (0, 0)  # closest hits, occlusion
+        self.phases, self.counts = {"paths": 0.0, "film": 0.0}, {}
         self.cache_hits = self.cache_misses = 0
         self.pool = ThreadPoolExecutor(threads)
 
@@ -54,9 +55,11 @@ class StochasticSampler:
 
     def iterate(self, iteration, stop=None):
         """Trace one path per pixel and add them to the film; `False` if `stop` was set before all were traced."""
+        begun = time.monotonic()
         progress = np.zeros(4, np.int64)
         arguments = self._arguments(iteration, progress)
         self.run([(trace_paths, arguments)] * self.threads, stop, progress)
+        self.phases["paths"] += time.monotonic() - begun
         if progress[STOP]:
             return False
         self.add_to_film(iteration)
@@ -87,6 +90,7 @@ class StochasticSampler:
 
     def add_to_film(self, iteration):
         """Add the image of the iteration to the film, in row order whatever the threads."""
+        begun = time.monotonic()
         film, height = self.film, self.film.height
         edges = np.linspace(0, height, self.threads + 1).astype(int)
         places = [self._places() for _ in range(self.threads)]
@@ -97,6 +101,7 @@ class StochasticSampler:
             if count:
                 film.reject(count, where, (self.crop[0], self.crop[2]), iteration)
         film.iterations += 1
+        self.phases["film"] += time.monotonic() - begun
 
     @staticmethod
     def _places():

@@ -14,7 +14,7 @@ from ..transport.roulette import Limits
 from ..transport.sensing import Bands, Sensing
 from .wavelengths import resolve_spectra, shared_wavelengths
 
-STRATIFIED_PAIRS = 12  # the film, the lens, the wavelengths and three vertices; see benchmarks/
+STRATIFIED_PAIRS = 9  # the film, the lens, the wavelengths and two vertices; see benchmarks/README.md
 STOP_POLL_SECONDS = 0.05
 ANNOUNCE_SECONDS = 1.0
 COMPILE_SECONDS_HINT = 15

@@ -4,7 +4,7 @@ from ..core.rng import stream_of
 from ..core.vector import with_lane
 from ..jit import function, kernel
 from ..transport.recording import LT, Place, record
-from ..transport.sensing import rgb_of, wavelengths_of_path
+from ..transport.sensing import add_sample, wavelengths_of_path
 from .path_tracing import WAVELENGTH
 
 
@@ -24,20 +24,18 @@ def add_splats(setup, first, end, image):
                 splat = splats[path.first_splat + i]
                 row = splat.pixel // width
                 if first <= row < end:
-                    place = Place(row, splat.pixel % width, wavelengths, weights)
-                    _add(setup.stores.techniques, scene, image, place, splat)
+                    value, column = _value(splat, wavelengths), splat.pixel % width
+                    add_sample(sensing, scene.spectra, image, row, column, value * weights, wavelengths)
+                    place = Place(row, column, wavelengths, weights)
+                    _record(setup.stores.techniques, scene, place, splat, value)
 
 
 @function
-def _add(tables, scene, image, place, splat):
-    value = place.wavelengths
+def _value(splat, zero):
+    value = zero
     for i in range(len(splat.value)):
         value = with_lane(value, i, splat.value[i])
-    red, green, blue = rgb_of(scene.spectra, value * place.weights, place.wavelengths)
-    image[place.row, place.column, 0] += red
-    image[place.row, place.column, 1] += green
-    image[place.row, place.column, 2] += blue
-    _record(tables, scene, place, splat, value)
+    return value
 
 
 @function

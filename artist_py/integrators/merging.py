@@ -2,11 +2,11 @@
 
 from ..core.atomic import fetch_and_add
 from ..core.rng import stream_of
-from ..jit import function, kernel
+from ..jit import kernel
 from ..transport.merge import merge_at
 from ..transport.recording import Place
 from ..transport.roulette import local_survival
-from ..transport.sensing import rgb_of, wavelengths_of_path
+from ..transport.sensing import add_sample, wavelengths_of_path
 from ..transport.vertices import CHUNK, load_vertex
 
 NEXT_CHUNK, MERGES = range(2)  # in progress
@@ -24,8 +24,8 @@ def gather(setup, grid, merging, progress, image):
         chunk = fetch_and_add(progress, NEXT_CHUNK, 1)
         if chunk >= eye.state[0]:
             break
-        for row in range(chunk * CHUNK, chunk * CHUNK + eye.used[chunk]):
-            record = eye.records[row]
+        for index in range(chunk * CHUNK, chunk * CHUNK + eye.used[chunk]):
+            record = eye.records[index]
             stored = load_vertex(scene.needs.smooth_triangles, record, sensing.zero)
             survival = local_survival(scene, stored.vertex, wavelengths)
             place = Place(record.pixel // width, record.pixel % width, wavelengths, weights)
@@ -41,13 +41,6 @@ def gather(setup, grid, merging, progress, image):
                 place,
             )
             merges += merged.count
-            _add(scene, image, place, stored.throughput * merged.value)
+            value = stored.throughput * merged.value * weights
+            add_sample(sensing, scene.spectra, image, place.row, place.column, value, wavelengths)
     fetch_and_add(progress, MERGES, merges)
-
-
-@function
-def _add(scene, image, place, radiance):
-    red, green, blue = rgb_of(scene.spectra, radiance * place.weights, place.wavelengths)
-    image[place.row, place.column, 0] += red
-    image[place.row, place.column, 1] += green
-    image[place.row, place.column, 2] += blue

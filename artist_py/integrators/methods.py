@@ -32,10 +32,11 @@ METHODS = {
 }
 
 
-def method_of(name, n_pixels, light_paths, offset, merge_area):
+def method_of(name, n_pixels, light_paths, offset, merge_area, power=False):
     """The `Method` of a name, for so many pixels, light subpaths per pixel and a merge area in render-space units^2.
 
-    `offset` in [0, 1) says which pixels get one more light subpath than others, where `light_paths` is not whole.
+    `power` chooses the power heuristic (beta = 2). `offset` in [0, 1) says which pixels get one more light subpath
+    than others, where `light_paths` is not whole.
     """
     n_light_paths = n_pixels * light_paths
     subset = METHODS[name]
@@ -46,6 +47,7 @@ def method_of(name, n_pixels, light_paths, offset, merge_area):
         light_paths if subset.connect else 0.0,
         light_paths if subset.light_image else 0.0,
         n_light_paths * merge_area if subset.merge else 0.0,
+        True if power else None,
     )
     return Method(
         Techniques(**present), counts, float(n_pixels), n_light_paths, light_paths, offset, subset.hit

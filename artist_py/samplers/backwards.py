@@ -22,19 +22,22 @@ from ..transport.merge import Merging
 from ..transport.photon_grid import Grid, count_photons, photon_dtype, place_photons
 from ..transport.splats import splat_dtype
 from ..transport.vertices import CHUNK, NEXT_CHUNK, SHORTAGE, Pool, vertex_dtype
+from .memory import RECORDS_PER_PATH
 from .stochastic import StochasticSampler
 from .wavelengths import van_der_corput
 
-RECORDS_PER_PATH = 4  # to begin with; pools that run short grow by half
 SMALLEST_RADIUS = 1e-7  # of the scene's radius: below, float32 positions decide what is near
 
 
-def radius_of(first, alpha, iteration):
+def radius_of(first, alpha, iteration, schedule="knaus-zwicker"):
     """Merge radius of an iteration: r_{n+1}^2 = r_n^2 (n + alpha) / (n + 1) (Knaus and Zwicker 2011).
 
     In closed form, so that an iteration depends on its index alone: the product is a ratio of gamma functions.
+    "smallvcm" is the approximation r_1 n^((alpha - 1) / 2) of Georgiev's implementation.
     """
     n = iteration + 1
+    if schedule == "smallvcm":
+        return first * n ** (0.5 * (alpha - 1.0))
     log_ratio = math.lgamma(n + alpha) - math.lgamma(1 + alpha) - math.lgamma(n + 1)
     return first * math.exp(0.5 * log_ratio)
 
@@ -42,16 +45,16 @@ def radius_of(first, alpha, iteration):
 class BackwardsSampler(StochasticSampler):
     """Drives a bidirectional method over a film; a context manager, because it owns threads."""
 
-    def __init__(self, compiled, film, threads, recorder=None):
+    def __init__(self, compiled, film, threads, light_paths, recorder=None):
         super().__init__(compiled, film, threads, recorder)
         render = compiled.graph.render
         self.method_name, self.merging = render.integrator, render.merging
         self.subset = METHODS[render.integrator]
         self.n_pixels = film.width * film.height
-        self.light_paths = render.merging.light_paths
+        self.light_paths = light_paths  # per pixel
         self.lanes = render.hero_count
-        self.merges = 0
-        self.phases = dict.fromkeys(("subpaths", "photon_grid", "merging", "film"), 0.0)
+        self.counts = {"light_vertices": 0, "eye_vertices": 0, "merges": 0}
+        self.phases = dict.fromkeys(("subpaths", "photon_grid", "merging", "light_image", "film"), 0.0)
         self.paths = Table(np.zeros(math.ceil(self.n_pixels * self.light_paths) + 1, path_dtype))
         self.light = self._pool(vertex_dtype(self.lanes), self.subset.connect or self.subset.merge)
         self.eye = self._pool(vertex_dtype(self.lanes), self.subset.merge)
@@ -118,7 +121,12 @@ class BackwardsSampler(StochasticSampler):
         work = Pass(self.seed, iteration, self.stratified_pairs, self.crop, self.width, Table(progress))
         radius = self._radius(iteration)
         method = method_of(
-            self.method_name, self.n_pixels, self.light_paths, van_der_corput(iteration), math.pi * radius**2
+            self.method_name,
+            self.n_pixels,
+            self.light_paths,
+            van_der_corput(iteration),
+            math.pi * radius**2,
+            compiled.graph.render.heuristic == "power",
         )
         stores = Stores(self.light, self.eye, self.splats, self.paths, Table(resume), self.technique_tables)
         camera, pixel_filter = compiled.camera, compiled.pixel_filter
@@ -126,9 +134,14 @@ class BackwardsSampler(StochasticSampler):
 
     def _radius(self, iteration):
         """Merge radius in render space."""
-        space = self.compiled.space
+        merging, space, camera = self.merging, self.compiled.space, self.compiled.graph.camera
         scene_radius = space.radius * space.scale
-        radius = radius_of(self.merging.radius * scene_radius, self.merging.alpha, iteration)
+        if merging.radius_pixels is None:
+            first = merging.radius * scene_radius
+        else:
+            pixel = float(np.linalg.norm(self.compiled.camera.right.values))
+            first = merging.radius_pixels * pixel * math.hypot(*camera.view()) * space.scale
+        radius = radius_of(first, merging.alpha, iteration, merging.schedule)
         return max(radius, SMALLEST_RADIUS * scene_radius)
 
     def _grid(self, n_photons, radius):
@@ -136,6 +149,14 @@ class BackwardsSampler(StochasticSampler):
         buckets = 1 << max((n_photons - 1).bit_length(), 4)
         photons = np.empty(n_photons, photon_dtype(self.lanes))
         return Grid(Table(photons), Table(np.zeros(buckets + 1, np.int64)), 2.0 * radius)
+
+    def _merging(self, setup, radius):
+        return Merging(
+            radius,
+            1.0 / (math.pi * radius**2 * setup.method.n_light_paths),
+            self.merging.min_normal_cosine,
+            True if self.merging.kernel == "epanechnikov" else None,
+        )
 
     def _merge(self, setup, radius):
         """Sort the photons, and gather them around the stored eye vertices."""
@@ -150,10 +171,12 @@ class BackwardsSampler(StochasticSampler):
         places = zip(ranges, before, strict=False)
         self.run([(place_photons, (grid, records, self.paths, *each, start)) for each, start in places])
         sorted_at = time.monotonic()
-        merging = Merging(radius, 1.0 / (math.pi * radius**2 * setup.method.n_light_paths))
+        merging = self._merging(setup, radius)
         progress = np.zeros(2, np.int64)
         self.run([(gather, (setup, grid, merging, Table(progress), Table(self.image)))] * self.threads)
-        self.merges += int(progress[MERGES])
+        self.counts["light_vertices"] += len(grid.photons)
+        self.counts["eye_vertices"] += int(self.eye.used.array.sum())
+        self.counts["merges"] += int(progress[MERGES])
         self.phases["photon_grid"] += sorted_at - begun
         self.phases["merging"] += time.monotonic() - sorted_at
 
@@ -163,7 +186,7 @@ class BackwardsSampler(StochasticSampler):
         begun = time.monotonic()
         edges = np.linspace(0, self.film.height, self.threads + 1).astype(int).tolist()
         self.run([(add_splats, (setup, *rows, Table(self.image))) for rows in pairwise(edges)])
-        self.phases["film"] += time.monotonic() - begun
+        self.phases["light_image"] += time.monotonic() - begun
 
     # --- compilation
 
@@ -175,7 +198,7 @@ class BackwardsSampler(StochasticSampler):
         if self.splats is not None:
             calls.append((add_splats, (setup, 0, 0, image)))
         if self.eye is not None:
-            grid, merging = self._grid(0, radius), Merging(radius, 1.0)
+            grid, merging = self._grid(0, radius), self._merging(setup, radius)
             calls.append((count_photons, (grid, self.light.records, self.paths, 0, 0)))
             calls.append((place_photons, (grid, self.light.records, self.paths, 0, 0, 0)))
             calls.append((gather, (setup, grid, merging, Table(np.zeros(2, np.int64)), image)))

@@ -2,22 +2,19 @@
 
 import resource
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
-import numpy as np
-
-from ..core.table import Table
-from ..errors import OptionError
 from ..film.accumulation import Film
 from ..film.image import FilmImage
 from ..film.techniques import LONGEST, TechniqueImages
+from ..integrators.methods import METHODS
 from .aovs import render_aovs
 from .backwards import BackwardsSampler
+from .memory import band_edges, crop_of, light_paths_within, memory_estimate
 from .stochastic import StochasticSampler
-from .techniques import BYTES_PER_VALUE, TechniqueRecorder, techniques_of_render
+from .techniques import TechniqueRecorder, techniques_of_render
 
 PROGRESS_SECONDS = 0.25
-BAND_NM = 10
 
 
 @dataclass(frozen=True)
@@ -64,31 +61,35 @@ class _Run:
     begun: float = 0.0
     last_save: float = 0.0
     last_progress: float = -1.0
-    phases: dict = field(default_factory=dict)
 
 
 def render(compiled, settings, observer=None, stop=None):
     """Render until a limit is reached or `stop` (a threading.Event) is set; returns a `RenderResult`."""
     run = _Run(compiled, settings, observer or Silence(), stop)
-    check_memory(compiled, settings)
-    film = _film_of(compiled, settings)
     for text in compiled.warnings:
         run.observer.warning(text)
-    sampler_class = StochasticSampler if compiled.graph.render.integrator == "pt" else BackwardsSampler
-    recorder = _recorder_of(compiled, settings, film)
-    with sampler_class(compiled, film, settings.threads, recorder) as sampler:
-        seconds = sampler.compile_kernels(run.observer)
+    light_paths = light_paths_within(compiled, settings, run.observer.warning)
+    film, recorder = _film_of(compiled, settings), _recorder_of(compiled, settings)
+    with _sampler(compiled, film, settings.threads, light_paths, recorder) as sampler:
+        compile_seconds = sampler.compile_kernels(run.observer)
         run.observer.started(_plan(compiled, settings))
         run.begun = run.last_save = time.monotonic()
         cpu_begun = time.process_time()
         interrupted = _iterate(run, sampler, film)
-        run.phases = {"path_tracing": time.monotonic() - run.begun}
+        seconds = time.monotonic() - run.begun
         cpu = time.process_time() - cpu_begun
         aovs = render_aovs(compiled, sampler, settings, run.observer) if settings.aovs else {}
     image = film_image(compiled, settings, film, aovs)
-    statistics = _statistics(run, sampler, film, seconds, cpu)
+    statistics = _statistics(run, sampler, film, compile_seconds, seconds, cpu)
     techniques = recorder and recorder.film.images(film.iterations)
     return RenderResult(image, statistics, interrupted, techniques)
+
+
+def _sampler(compiled, film, threads, light_paths, recorder):
+    """The image sampler that drives the scene's integrator."""
+    if compiled.graph.render.integrator in METHODS:
+        return BackwardsSampler(compiled, film, threads, light_paths, recorder)
+    return StochasticSampler(compiled, film, threads, recorder)
 
 
 def _iterate(run, sampler, film):
@@ -138,67 +139,19 @@ def _report(run, film, error):
     return error
 
 
-def crop_of(graph):
-    """Pixels to render, (x0, x1, y0, y1), half open."""
-    width, height = graph.film.resolution
-    return graph.film.crop or (0, width, 0, height)
-
-
-def band_edges(compiled):
-    """Edges of the spectral bands, nm."""
-    first, last = compiled.wavelength_range
-    return np.arange(first, last + BAND_NM - 1, BAND_NM, dtype=float)
-
-
 def _film_of(compiled, settings):
     x0, x1, y0, y1 = crop_of(compiled.graph)
     bands = len(band_edges(compiled)) - 1 if settings.spectral else 0
     return Film(y1 - y0, x1 - x0, "variance" in settings.aovs, bands)
 
 
-def _recorder_of(compiled, settings, film):
+def _recorder_of(compiled, settings):
+    """Where the image sampler keeps what each technique brings, or `None`."""
     if not settings.techniques:
         return None
-    techniques = techniques_of_render(compiled.graph.render, settings.technique_length)
-    return TechniqueRecorder(techniques, film.height, film.width)
-
-
-def _technique_bytes(compiled, settings, pixels):
-    if not settings.techniques:
-        return 0
-    techniques = techniques_of_render(compiled.graph.render, settings.technique_length)
-    return len(techniques) * pixels * 3 * BYTES_PER_VALUE
-
-
-def memory_estimate(compiled, settings):
-    """Bytes that a render needs beyond the interpreter: `{what: bytes}`."""
     x0, x1, y0, y1 = crop_of(compiled.graph)
-    pixels = (x1 - x0) * (y1 - y0)
-    bands = len(band_edges(compiled)) - 1 if settings.spectral else 0
-    geometry = compiled.scene.geometry
-    arrays = [array for array in geometry if isinstance(array, Table)]
-    emitters = compiled.scene.emitters
-    faces = len(geometry.triangles) + len(geometry.parallelograms)
-    return {
-        "film": pixels * (12 + 24 + 12 + (24 if "variance" in settings.aovs else 0) + 12 * bands),
-        "techniques": _technique_bytes(compiled, settings, pixels),
-        "auxiliary outputs": pixels * 60 if set(settings.aovs) - {"variance"} else 0,
-        "geometry": sum(array.nbytes for array in arrays) + (emitters.records.nbytes if emitters else 0),
-        "acceleration structure": 110 * faces,
-        "spectra": compiled.spectra.nbytes,
-    }
-
-
-def check_memory(compiled, settings):
-    """Raise an `OptionError` if the render cannot stay within `max_memory_bytes`."""
-    if settings.max_memory_bytes is None:
-        return
-    needed = sum(memory_estimate(compiled, settings).values())
-    if needed > settings.max_memory_bytes:
-        raise OptionError(
-            f"--max-memory: this render needs about {needed / 2**20:.0f} MiB, and "
-            f"{settings.max_memory_bytes / 2**20:.0f} MiB are allowed; render it in parts with --crop"
-        )
+    techniques = techniques_of_render(compiled.graph.render, settings.technique_length)
+    return TechniqueRecorder(techniques, y1 - y0, x1 - x0)
 
 
 def _plan(compiled, settings):
@@ -232,16 +185,16 @@ def film_image(compiled, settings, film, aovs):
     )
 
 
-def _statistics(run, sampler, film, compile_seconds, cpu):
+def _statistics(run, sampler, film, compile_seconds, seconds, cpu):
     rays, shadow_rays = sampler.rays
-    seconds = run.phases["path_tracing"]
     paths = film.iterations * film.height * film.width
     return {
         "scene_seconds": run.compiled.seconds,
         "compile_seconds": compile_seconds,
         "cache_hits": sampler.cache_hits,
         "cache_misses": sampler.cache_misses,
-        "phase_seconds": run.phases,
+        "phase_seconds": sampler.phases,
+        **sampler.counts,
         "cpu_seconds": cpu,
         "threads": run.settings.threads,
         "paths": paths,

@@ -15,7 +15,7 @@ from ..transport.roulette import Limits
 from ..transport.sensing import Bands, Sensing
 from .wavelengths import resolve_spectra, shared_wavelengths
 
-STRATIFIED_PAIRS = 12  # the film, the lens, the wavelengths and three vertices; see benchmarks/
+STRATIFIED_PAIRS = 9  # the film, the lens, the wavelengths and two vertices; see benchmarks/README.md
 STOP_POLL_SECONDS = 0.05
 ANNOUNCE_SECONDS = 1.0
 COMPILE_SECONDS_HINT = 15
@@ -34,7 +34,8 @@ class StochasticSampler:
         self.stratified_pairs = STRATIFIED_PAIRS if render.sampler == "sobol" else 0
         self.image = np.zeros((film.height, film.width, 3), np.float32)
         self.bands = self._bands()
-        self.rays = (0, 0)
+        self.rays = (0, 0)  # closest hits, occlusion
+        self.phases, self.counts = {"paths": 0.0, "film": 0.0}, {}
         self.cache_hits = self.cache_misses = 0
         self.pool = ThreadPoolExecutor(threads)
 
@@ -55,9 +56,11 @@ class StochasticSampler:
 
     def iterate(self, iteration, stop=None):
         """Trace one path per pixel and add them to the film; `False` if `stop` was set before all were traced."""
+        begun = time.monotonic()
         progress = np.zeros(4, np.int64)
         arguments = self._arguments(iteration, progress)
         self.run([(trace_paths, arguments)] * self.threads, stop, progress)
+        self.phases["paths"] += time.monotonic() - begun
         if progress[STOP]:
             return False
         self.add_to_film(iteration)
@@ -94,6 +97,7 @@ class StochasticSampler:
 
     def add_to_film(self, iteration):
         """Add the image of the iteration to the film, in row order whatever the threads."""
+        begun = time.monotonic()
         film, height = self.film, self.film.height
         edges = np.linspace(0, height, self.threads + 1).astype(int)
         places = [self._places() for _ in range(self.threads)]
@@ -107,6 +111,7 @@ class StochasticSampler:
             jobs = [self.recorder.add_job(self.image, *rows) for rows in pairwise(edges)]
             self.recorder.film.rejected_count += sum(self.run(jobs))
         film.iterations += 1
+        self.phases["film"] += time.monotonic() - begun
 
     @staticmethod
     def _places():

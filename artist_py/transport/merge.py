@@ -14,15 +14,15 @@ from .recording import VM, record
 from .subpath import is_on_side
 from .vertices import load_throughput
 
-# Photons on surfaces that face elsewhere are not of this surface: they would leak through edges and thin walls.
-MIN_NORMAL_COSINE = 0.4
-
 
 class Merging(NamedTuple):
     """Constants of an iteration's merges."""
 
     radius: float  # render-space units
     normalization: float  # 1 / (pi r^2 N_L)
+    # Photons on surfaces that face elsewhere are not of this surface: they would leak through edges and thin walls.
+    min_normal_cosine: float
+    epanechnikov: bool | None  # K = 2 (1 - d^2 / r^2) / (pi r^2) instead of the constant kernel 1 / (pi r^2)
 
 
 class Merged(NamedTuple):
@@ -48,15 +48,15 @@ def merge_at(scene, method, grid, merging, stored, survival, limits, tables, pla
         if not _is_visited(i, j, k, corner, bucket, buckets):
             for row in range(grid.starts[bucket], grid.starts[bucket + 1]):
                 photon = grid.photons[row]
-                if _is_near(photon, p, merging.radius) and photon.length + stored.length <= limits.max_length:
-                    merged = _merge(scene, method, photon, stored, survival, wavelengths)
-                    total = total + merged.value
+                distance_squared = _distance_squared(photon, p) / (merging.radius * merging.radius)
+                length = photon.length + stored.length
+                if distance_squared <= 1.0 and length <= limits.max_length:
+                    merged = _merge(scene, method, merging, photon, stored, survival, wavelengths)
+                    value = merged.value * _kernel(merging.epanechnikov, distance_squared)
+                    total = total + value
                     count += 1
-                    length = photon.length + stored.length
-                    contribution = stored.throughput * merged.value * merging.normalization
-                    record(
-                        tables, scene.spectra, place, VM, length, stored.length, contribution, merged.weight
-                    )
+                    value = stored.throughput * value * merging.normalization
+                    record(tables, scene.spectra, place, VM, length, stored.length, value, merged.weight)
     return Merged(total * merging.normalization, count)
 
 
@@ -76,9 +76,9 @@ def _is_visited(i, j, k, corner, bucket, buckets):
 
 
 @function
-def _is_near(photon, p, radius):
+def _distance_squared(photon, p):
     dx, dy, dz = photon.position[0] - p.x, photon.position[1] - p.y, photon.position[2] - p.z
-    return dx * dx + dy * dy + dz * dz <= radius * radius
+    return dx * dx + dy * dy + dz * dz
 
 
 class MergedPhoton(NamedTuple):
@@ -89,14 +89,22 @@ class MergedPhoton(NamedTuple):
 
 
 @function
-def _merge(scene, method, photon, stored, survival, wavelengths):
+def _kernel(epanechnikov, distance_squared):
+    """The kernel over 1 / (pi r^2), at a distance in radii; weights keep the area pi r^2 for either (theory 1.2)."""
+    if epanechnikov is None:
+        return 1.0
+    return 2.0 * (1.0 - distance_squared)
+
+
+@function
+def _merge(scene, method, merging, photon, stored, survival, wavelengths):
     vertex = stored.vertex
     normal = load_vec3(photon.normal)
     direction = load_vec3(photon.direction)
     wi = to_local(vertex.frame, direction)
     material = scene.materials[vertex.surface.material]
     pdf = pdf_bsdf(scene.needs, material, vertex.wo, wi)
-    if pdf == 0.0 or abs(dot(normal, vertex.surface.normal)) < MIN_NORMAL_COSINE:
+    if pdf == 0.0 or abs(dot(normal, vertex.surface.normal)) < merging.min_normal_cosine:
         return MergedPhoton(black(wavelengths), 0.0)
     if not is_on_side(scene.needs.smooth_triangles, vertex.surface, direction, wi):
         return MergedPhoton(black(wavelengths), 0.0)

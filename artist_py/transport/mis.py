@@ -8,9 +8,11 @@ do, E everything further away. In streaming form C and E change
 * when a direction is sampled: (1.19), `after_scatter` and `after_delta`;
 * on arrival at the next vertex: (1.20), `on_arrival`.
 
-A technique that is switched off has a count of zero; nothing else changes (theory 1.9). Balance heuristic.
+A technique that is switched off has a count of zero; nothing else changes (theory 1.9). The balance heuristic is the
+default; for the power heuristic with beta = 2 sums become Euclidean norms, and C and E stay un-powered (4.1).
 """
 
+import math
 from typing import NamedTuple
 
 from ..core.vector import dot
@@ -30,9 +32,8 @@ class Counts(NamedTuple):
     nee: float
     vc: float
     lt: float
-    vm_area: (
-        float  # a = n_vm pi r^2: light subpaths in the photon map times the merge area, render-space units^2
-    )
+    vm_area: float  # a = n_vm pi r^2 of (1.7), n_vm light subpaths in the photon map; render-space units^2
+    power: bool | None  # the power heuristic instead of the balance heuristic
 
 
 class Partial(NamedTuple):
@@ -77,35 +78,64 @@ def partial_after(counts, partial, step, surface, survival, cos_in):
 @function
 def bracket(counts, partial, pdf_rev):
     """B of (1.10), (1.12): what all other techniques on this side of the vertex do, given its reverse density."""
-    return counts.vm_area + partial.c + pdf_rev * partial.e
+    return norm(counts.power, counts.vm_area, partial.c, pdf_rev * partial.e)
+
+
+@function
+def norm(power, x, y, z):
+    """|| (x, y, z) ||_beta of (4.1), scaled by the largest so that no square overflows."""
+    if power is None:
+        return x + y + z
+    largest = max(max(x, y), z)
+    if largest == 0.0:
+        return 0.0
+    x, y, z = x / largest, y / largest, z / largest
+    return largest * math.sqrt(x * x + y * y + z * z)
+
+
+@function
+def share(power, x, y, z):
+    """x^beta / (x^beta + y^beta + z^beta)."""
+    if power is None:
+        return x / (x + y + z)
+    y, z = y / x, z / x
+    return 1.0 / (1.0 + y * y + z * z)
 
 
 @function
 def weight_of_connection(counts, density_at_light_vertex, light_bracket, density_at_eye_vertex, eye_bracket):
     """(1.13); densities are those of finding the one vertex by sampling from the other, per area."""
-    others = density_at_light_vertex * light_bracket + density_at_eye_vertex * eye_bracket
-    return counts.vc / (counts.vc + others)
+    light, eye = density_at_light_vertex * light_bracket, density_at_eye_vertex * eye_bracket
+    return share(counts.power, counts.vc, light, eye)
 
 
 @function
 def weight_of_merge(counts, light_bracket, eye_bracket):
     """(1.14)."""
-    return counts.vm_area / (light_bracket + eye_bracket - counts.vm_area)
+    return _merge_share(counts.power, counts.vm_area, light_bracket, eye_bracket)
+
+
+@function
+def _merge_share(power, area, light, eye):
+    if power is None:
+        return area / (light + eye - area)
+    light, eye = light / area, eye / area
+    return 1.0 / (light * light + eye * eye - 1.0)
 
 
 @function
 def weight_of_next_event(counts, hit_ratio, emission_ratio, eye_bracket):
     """(1.15): `hit_ratio` is p<_0 / pc_0, `emission_ratio` p>_0 p>_1 / pc_0."""
-    return counts.nee / (counts.nee + counts.hit * hit_ratio + emission_ratio * eye_bracket)
+    return share(counts.power, counts.nee, counts.hit * hit_ratio, emission_ratio * eye_bracket)
 
 
 @function
 def weight_of_light_image(counts, camera_density, light_bracket):
     """(1.16) for a pinhole, or a lens that light does not hit: `camera_density` is p<_{k-1}."""
-    return counts.lt / (counts.lt + camera_density * light_bracket)
+    return share(counts.power, counts.lt, camera_density * light_bracket, 0.0)
 
 
 @function
 def weight_of_hit(counts, nee_ratio, emission_density, partial):
     """(1.17): `nee_ratio` is pc_0 / p<_0, 0 where it cannot be; `emission_density` p>_0 e."""
-    return counts.hit / (counts.hit + counts.nee * nee_ratio + emission_density * partial.e)
+    return share(counts.power, counts.hit, counts.nee * nee_ratio, emission_density * partial.e)

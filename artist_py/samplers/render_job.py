@@ -63,9 +63,8 @@ def render(compiled, settings, observer=None, stop=None):
     run = _Run(compiled, settings, observer or Silence(), stop)
     for text in compiled.warnings:
         run.observer.warning(text)
-    light_paths = light_paths_within(compiled, settings, run.observer.warning)
     film = _film_of(compiled, settings)
-    with _sampler(compiled, film, settings.threads, light_paths) as sampler:
+    with sampler_for(compiled, film, settings, run.observer) as sampler:
         compile_seconds = sampler.compile_kernels(run.observer)
         run.observer.started(_plan(compiled, settings))
         run.begun = run.last_save = time.monotonic()
@@ -79,11 +78,12 @@ def render(compiled, settings, observer=None, stop=None):
     return RenderResult(image, statistics, interrupted)
 
 
-def _sampler(compiled, film, threads, light_paths):
-    """The image sampler that drives the scene's integrator."""
+def sampler_for(compiled, film, settings, observer):
+    """The image sampler that drives the scene's integrator, within the memory that `settings` allows."""
+    light_paths = light_paths_within(compiled, settings, observer.warning)
     if compiled.graph.render.integrator in METHODS:
-        return BackwardsSampler(compiled, film, threads, light_paths)
-    return StochasticSampler(compiled, film, threads)
+        return BackwardsSampler(compiled, film, settings.threads, light_paths)
+    return StochasticSampler(compiled, film, settings.threads)
 
 
 def _iterate(run, sampler, film):

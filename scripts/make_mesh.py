@@ -49,36 +49,35 @@ def knot(along, around):
 
 def surface(t, phi):
     """Points of the rope, shape of `t` and `phi` together with a last axis x, y, z; both run from 0 to 2 pi."""
-    torus_normal = np.stack(
-        [
-            np.cos(TURNS * t) * np.cos(WINDINGS * t),
-            np.cos(TURNS * t) * np.sin(WINDINGS * t),
-            np.sin(TURNS * t),
-        ],
-        axis=-1,
+    centre, tangent, normal = knot_line(t)
+    strand = STRANDS * phi + TWISTS * t
+    relief = RELIEF * np.sqrt(np.cos(strand / 2) ** 2 + 0.02)  # 0.02 rounds the grooves between the strands
+    fibres = FIBRE_RELIEF * np.cos(FIBRES * phi - strand)
+    radius = ROPE * (1 + relief + fibres)
+    side = np.cross(tangent, normal)
+    return centre + vector(radius) * (vector(np.cos(phi)) * normal + vector(np.sin(phi)) * side)
+
+
+def knot_line(t):
+    """Points of the knot's centre line, its unit tangents, and the unit normals of the torus there."""
+    cos_w, sin_w, cos_t, sin_t = (
+        np.cos(WINDINGS * t),
+        np.sin(WINDINGS * t),
+        np.cos(TURNS * t),
+        np.sin(TURNS * t),
     )
-    ring = np.stack([np.cos(WINDINGS * t), np.sin(WINDINGS * t), np.zeros_like(t)], axis=-1)
-    centre = RING * ring + COIL * torus_normal
-    # The derivative of the centre: a tangent of the torus, hence perpendicular to its normal.
-    ring_ahead = np.stack([-np.sin(WINDINGS * t), np.cos(WINDINGS * t), np.zeros_like(t)], axis=-1)
-    tube_ahead = np.stack(
-        [
-            -np.sin(TURNS * t) * np.cos(WINDINGS * t),
-            -np.sin(TURNS * t) * np.sin(WINDINGS * t),
-            np.cos(TURNS * t),
-        ],
-        axis=-1,
-    )
-    tangent = WINDINGS * (RING + COIL * np.cos(TURNS * t))[..., None] * ring_ahead + TURNS * COIL * tube_ahead
-    tangent /= np.linalg.norm(tangent, axis=-1, keepdims=True)
-    side = np.cross(tangent, torus_normal)
-    angle = STRANDS * phi + TWISTS * t
-    radius = ROPE * (
-        1 + RELIEF * np.sqrt(np.cos(angle / 2) ** 2 + 0.02) + FIBRE_RELIEF * np.cos(FIBRES * phi - angle)
-    )
-    return centre + radius[..., None] * (
-        np.cos(phi)[..., None] * torus_normal + np.sin(phi)[..., None] * side
-    )
+    normal = vector(cos_t * cos_w, cos_t * sin_w, sin_t)
+    centre = RING * vector(cos_w, sin_w, 0 * t) + COIL * normal
+    ahead_along_ring = WINDINGS * (RING + COIL * cos_t)
+    ahead_along_coil = TURNS * COIL
+    tangent = vector(ahead_along_ring) * vector(-sin_w, cos_w, 0 * t)
+    tangent = tangent + ahead_along_coil * vector(-sin_t * cos_w, -sin_t * sin_w, cos_t)
+    return centre, tangent / np.linalg.norm(tangent, axis=-1, keepdims=True), normal
+
+
+def vector(*components):
+    """Arrays as components along a new last axis."""
+    return np.stack(components, axis=-1)
 
 
 def grid_faces(along, around):

@@ -24,8 +24,7 @@ def add_rows(image, sums, odd_sums, squares, bands, band_sums, is_odd, first, en
     count = 0
     for row in range(first, end):
         for column in range(image.shape[1]):
-            # A comparison, and not isfinite of the sum: that is x - x == 0, which reassociation makes true of NaN.
-            if abs(image[row, column, 0] + image[row, column, 1] + image[row, column, 2]) < math.inf:
+            if _is_finite(image, row, column):
                 _add_pixel(image, sums, odd_sums, is_odd, row, column)
                 _add_squares(squares, image, row, column)
                 _add_bands(band_sums, bands, row, column)
@@ -34,6 +33,12 @@ def add_rows(image, sums, odd_sums, squares, bands, band_sums, is_odd, first, en
                     rejected[count, 0], rejected[count, 1] = row, column
                 count += 1
     return count
+
+
+@function
+def _is_finite(image, row, column):
+    # A comparison, and not isfinite of the sum: that is x - x == 0, which reassociation makes true of NaN.
+    return abs(image[row, column, 0] + image[row, column, 1] + image[row, column, 2]) < math.inf
 
 
 @function
@@ -72,7 +77,7 @@ def add_technique_rows(image, weighted, unweighted, weighted_sums, unweighted_su
     for technique in range(weighted.shape[0]):
         for row in range(first, end):
             for column in range(image.shape[1]):
-                if math.isfinite(image[row, column, 0] + image[row, column, 1] + image[row, column, 2]):
+                if _is_finite(image, row, column):
                     count += _add_technique(weighted, weighted_sums, technique, row, column)
                     count += _add_technique(unweighted, unweighted_sums, technique, row, column)
                 for channel in range(3):
@@ -86,7 +91,7 @@ def _add_technique(images, sums, technique, row, column):
     count = 0
     for channel in range(3):
         value = images[technique, row, column, channel]
-        if math.isfinite(value):
+        if abs(value) < math.inf:
             sums[technique, row, column, channel] += value
         else:
             count += 1

@@ -68,9 +68,8 @@ def render(compiled, settings, observer=None, stop=None):
     run = _Run(compiled, settings, observer or Silence(), stop)
     for text in compiled.warnings:
         run.observer.warning(text)
-    light_paths = light_paths_within(compiled, settings, run.observer.warning)
-    film, recorder = _film_of(compiled, settings), _recorder_of(compiled, settings)
-    with _sampler(compiled, film, settings.threads, light_paths, recorder) as sampler:
+    film = _film_of(compiled, settings)
+    with sampler_for(compiled, film, settings, run.observer) as sampler:
         compile_seconds = sampler.compile_kernels(run.observer)
         run.observer.started(_plan(compiled, settings))
         run.begun = run.last_save = time.monotonic()
@@ -81,15 +80,20 @@ def render(compiled, settings, observer=None, stop=None):
         aovs = render_aovs(compiled, sampler, settings, run.observer) if settings.aovs else {}
     image = film_image(compiled, settings, film, aovs)
     statistics = _statistics(run, sampler, film, compile_seconds, seconds, cpu)
-    techniques = recorder and recorder.film.images(film.iterations)
+    techniques = sampler.recorder and sampler.recorder.film.images(film.iterations)
     return RenderResult(image, statistics, interrupted, techniques)
 
 
-def _sampler(compiled, film, threads, light_paths, recorder):
-    """The image sampler that drives the scene's integrator."""
+def sampler_for(compiled, film, settings, observer):
+    """The image sampler that drives the scene's integrator, within the memory that `settings` allows."""
+    light_paths = light_paths_within(compiled, settings, observer.warning)
+    recorder = None
+    if settings.techniques:
+        techniques = techniques_of_render(compiled.graph.render, settings.technique_length)
+        recorder = TechniqueRecorder(techniques, film.height, film.width)
     if compiled.graph.render.integrator in METHODS:
-        return BackwardsSampler(compiled, film, threads, light_paths, recorder)
-    return StochasticSampler(compiled, film, threads, recorder)
+        return BackwardsSampler(compiled, film, settings.threads, light_paths, recorder)
+    return StochasticSampler(compiled, film, settings.threads, recorder)
 
 
 def _iterate(run, sampler, film):
@@ -143,15 +147,6 @@ def _film_of(compiled, settings):
     x0, x1, y0, y1 = crop_of(compiled.graph)
     bands = len(band_edges(compiled)) - 1 if settings.spectral else 0
     return Film(y1 - y0, x1 - x0, "variance" in settings.aovs, bands)
-
-
-def _recorder_of(compiled, settings):
-    """Where the image sampler keeps what each technique brings, or `None`."""
-    if not settings.techniques:
-        return None
-    x0, x1, y0, y1 = crop_of(compiled.graph)
-    techniques = techniques_of_render(compiled.graph.render, settings.technique_length)
-    return TechniqueRecorder(techniques, y1 - y0, x1 - x0)
 
 
 def _plan(compiled, settings):

@@ -9,7 +9,7 @@ from ..core.spectra import black
 from ..core.vector import Spectrum, dot
 from ..jit import function
 from .mis import Partial, bracket, weight_of_merge
-from .photon_grid import bucket_of, cell_of
+from .photon_grid import bucket_of, cell_of, is_in_cell
 from .recording import VM, record
 from .subpath import is_on_side
 from .vertices import load_throughput
@@ -43,14 +43,17 @@ def merge_at(scene, method, grid, merging, stored, survival, limits, tables, pla
     p = stored.vertex.surface.position
     i, j, k = _lower_cell(p.x, grid.cell), _lower_cell(p.y, grid.cell), _lower_cell(p.z, grid.cell)
     buckets = grid.starts.shape[0] - 1
+    scale = 1.0 / (merging.radius * merging.radius)
     for corner in range(8):
-        bucket = bucket_of(i + (corner & 1), j + ((corner >> 1) & 1), k + (corner >> 2), buckets)
-        if not _is_visited(i, j, k, corner, bucket, buckets):
-            for row in range(grid.starts[bucket], grid.starts[bucket + 1]):
-                photon = grid.photons[row]
-                distance_squared = _distance_squared(photon, p) / (merging.radius * merging.radius)
+        x, y, z = i + (corner & 1), j + ((corner >> 1) & 1), k + (corner >> 2)
+        bucket = bucket_of(x, y, z, buckets)
+        for row in range(grid.starts[bucket], grid.starts[bucket + 1]):
+            photon = grid.photons[row]
+            distance_squared = _distance_squared(photon, p) * scale
+            # A photon counts in its own cell only, since several of the eight may share a bucket.
+            if distance_squared <= 1.0 and is_in_cell(photon.position, x, y, z, grid.cell):
                 length = photon.length + stored.length
-                if distance_squared <= 1.0 and length <= limits.max_length:
+                if length <= limits.max_length:
                     merged = _merge(scene, method, merging, photon, stored, survival, wavelengths)
                     value = merged.value * _kernel(merging.epanechnikov, distance_squared)
                     total = total + value
@@ -64,15 +67,6 @@ def merge_at(scene, method, grid, merging, stored, survival, limits, tables, pla
 def _lower_cell(x, cell):
     """The lower of the two cells that a ball of half a cell's size around `x` can touch."""
     return cell_of(x - 0.5 * cell, cell)
-
-
-@function
-def _is_visited(i, j, k, corner, bucket, buckets):
-    """Whether an earlier one of the eight cells has the same bucket: its photons must not count twice."""
-    for other in range(corner):
-        if bucket_of(i + (other & 1), j + ((other >> 1) & 1), k + (other >> 2), buckets) == bucket:
-            return True
-    return False
 
 
 @function

@@ -97,9 +97,17 @@ def place_photons(grid, records, paths, first, end, before):
 
 @function
 def _bucket_of_vertex(record, cell, buckets):
-    position = record.position
-    return bucket_of(
-        cell_of(position[0], cell), cell_of(position[1], cell), cell_of(position[2], cell), buckets
+    x, y, z = (np.float32(record.position[0]), np.float32(record.position[1]), np.float32(record.position[2]))
+    return bucket_of(cell_of(x, cell), cell_of(y, cell), cell_of(z, cell), buckets)
+
+
+@function
+def is_in_cell(position, i, j, k, cell):
+    """Whether a photon's position (float32) lies in cell (i, j, k), by the arithmetic that has sorted it."""
+    return (
+        cell_of(np.float32(position[0]), cell) == i
+        and cell_of(np.float32(position[1]), cell) == j
+        and cell_of(np.float32(position[2]), cell) == k
     )
 
 

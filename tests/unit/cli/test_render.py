@@ -45,6 +45,8 @@ class TestRender:
             "spectral": False,
             "aovs": [],
             "max_memory_bytes": None,
+            "techniques": False,
+            "technique_length": 8,
         }
 
     def test_options_reach_scene_and_sampler(self, folder):
@@ -52,7 +54,8 @@ class TestRender:
         options = (
             "--integrator pt --iterations 7 --size 20x10 --crop 1,4,2,7 --threads 3 --seed 99 --wavelengths shared "
             "--hero-count 8 --spectral --aov depth,material --aov depth --set render.max_path_length=3 "
-            "--set film.filter=box --save-every 1m --max-memory 2GiB"
+            "--set film.filter=box --save-every 1m --max-memory 2GiB "
+            "--techniques --technique-length 5"
         )
         assert main(["render", "scene.toml", "-o", "a.exr", "-o", "a.png", *options.split()]) == 0
         image = read_image("a.exr")
@@ -70,6 +73,8 @@ class TestRender:
         assert given["settings"]["save_every_seconds"] == 60
         assert given["settings"]["max_memory_bytes"] == 2 * 2**30
         assert given["settings"]["aovs"] == ["depth", "material"]
+        assert given["settings"]["techniques"] is True
+        assert given["settings"]["technique_length"] == 5
         assert read_image("a.png").rgb.shape == (5, 3, 3)
 
     @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ from ..geometry.embree import INVALID_ID, closest_hit
 from ..geometry.surface import surface_at
 from ..jit import function, kernel
 from ..scene.tables import ABSORBER, Camera, Filter, Scene
-from ..transport.next_event import connect_to_emitter, radiance_of_hit
+from ..transport.next_event import connect_to_emitter, radiance_of_background, radiance_of_hit
 from ..transport.roulette import Limits, after_roulette, is_ended_by_roulette
 from ..transport.sensing import Sensing, store_sample, wavelengths_of_path
 from ..transport.subpath import go_straight, is_passed_through, scatter, start_path, vertex_at
@@ -129,9 +129,11 @@ def path_radiance(scene, limits, sensing, stream, wavelengths, origin, direction
         rays += 1
         hit = closest_hit(scene.geometry.embree, path.origin, path.direction, np.inf)
         if hit.geometry == INVALID_ID:
+            background = radiance_of_background(scene, path, length, wavelengths)
+            radiance = radiance + path.throughput * background
             break
         surface = surface_at(scene.geometry, scene.needs, path.origin, path.direction, hit)
-        radiance = radiance + path.throughput * radiance_of_hit(scene, surface, path, wavelengths)
+        radiance = radiance + path.throughput * radiance_of_hit(scene, surface, path, length, wavelengths)
         material = scene.materials[surface.material]
         if is_passed_through(scene, surface, material, path):
             path = go_straight(scene, surface, material, path)

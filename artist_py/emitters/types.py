@@ -14,7 +14,7 @@ class EmitterPoint(NamedTuple):
     """
 
     position: Vec3
-    normal: Vec3  # unit, on the emitting side; without a surface the direction that light takes to the reference
+    normal: Vec3  # unit, on the emitting side; without a surface the way that light takes to the reference
     pdf_solid_angle: float
     extent: float  # see geometry/surface.py
 

@@ -131,7 +131,10 @@ def _lights_and_materials(graph, geometry, spectra):
     """Both compiled, their problems reported together."""
     problems, result = [], []
     used = {placed.material for placed in geometry.placed}
-    for build in (lambda: EmitterCompiler(geometry, spectra, graph.emitters), lambda: MaterialCompiler(graph, used, spectra)):
+    for build in (
+        lambda: EmitterCompiler(geometry, spectra, graph.emitters),
+        lambda: MaterialCompiler(graph, used, spectra),
+    ):
         try:
             result.append(build())
         except SceneError as error:

@@ -43,7 +43,7 @@ class SpotEmitter(PointEmitter):
 
     look_at: Vector = key(point)  # on the axis of the cone
     angle: float = key(Number(above=0, at_most=180))  # degrees between the axis and the edge of the cone
-    falloff: float | None = key(_not_negative, None)  # degrees from the axis where it gets dimmer; default: angle
+    falloff: float | None = key(_not_negative, None)  # degrees; from here on it dims; default: angle
 
     def axis(self):
         """From the position to what is looked at, not normalised."""

@@ -2,8 +2,8 @@
 
 Lengths are in scene units, angles in degrees, wavelengths in nm, radiance in W m^-2 sr^-1 nm^-1. A key
 without a default must be given. The converters (`fields.py`) say what a value may be, `problems` what keys
-may not say together. Shapes are in `shape_types.py`, emitters without a shape in `emitter_types.py`, spectra in `spectrum_types.py`, transforms in
-`transforms.py`.
+may not say together. Shapes are in `shape_types.py`, emitters without a shape in `emitter_types.py`, spectra
+in `spectrum_types.py`, transforms in `transforms.py`.
 """
 
 import math

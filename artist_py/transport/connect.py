@@ -7,7 +7,13 @@ from ..bsdf.dispatch import evaluate_bsdf, pdf_bsdf
 from ..core.frame import to_local
 from ..core.spectra import black
 from ..core.vector import Spectrum, dot
-from ..emitters.dispatch import choose_emitter, emitted_radiance, is_emitting_towards, sample_emitter
+from ..emitters.dispatch import (
+    can_be_hit,
+    choose_emitter,
+    emitted_radiance,
+    is_emitting_towards,
+    sample_emitter,
+)
 from ..emitters.emission import emission_over_next_event
 from ..geometry.embree import is_occluded
 from ..geometry.surface import leave_surface, offset_position
@@ -79,7 +85,7 @@ def _to_light(emitters, scene, counts, vertex, partial, survival, wavelengths, u
         return nothing
     emitter = emitters.records[choose_emitter(emitters.alias, u_select)]
     position = vertex.surface.position
-    point = sample_emitter(scene.needs, scene.geometry, emitter, position, u, v)
+    point = sample_emitter(scene, emitter, position, u, v)
     towards = point.position - position
     if point.pdf_solid_angle == 0.0 or not is_emitting_towards(emitter, point.normal, -towards):
         return nothing
@@ -91,14 +97,14 @@ def _to_light(emitters, scene, counts, vertex, partial, survival, wavelengths, u
     if is_blocked(scene, vertex.surface, wi, end):
         return Connected(black(wavelengths), 1, 0.0)
     pdf_light = point.pdf_solid_angle * emitter.pdf_select
-    emission = emission_over_next_event(scene.needs, scene.geometry, emitter, point, towards, pdf_light)
+    emission = emission_over_next_event(scene, emitter, point, towards, pdf_light)
     weight = weight_of_next_event(
         counts,
-        there.pdf_fwd / pdf_light,
+        can_be_hit(scene.needs.surfaceless_emitters, emitter) * there.pdf_fwd / pdf_light,
         emission * there.cos_theta,
         bracket(counts, partial, there.pdf_rev),
     )
-    radiance = emitted_radiance(scene.spectra, emitter, wavelengths)
+    radiance = emitted_radiance(scene, emitter, -wi, wavelengths)
     return Connected(radiance * there.f_cos * (weight / pdf_light), 1, weight)
 
 

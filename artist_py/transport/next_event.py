@@ -9,16 +9,20 @@ from ..core.rng import random_pair
 from ..core.spectra import black
 from ..core.vector import Spectrum, dot
 from ..emitters.dispatch import (
+    can_be_hit,
     choose_emitter,
     emitted_radiance,
     is_emitting_towards,
+    is_hidden,
     pdf_emitter,
     sample_emitter,
 )
+from ..emitters.infinite import is_in_background
 from ..geometry.embree import is_occluded
 from ..geometry.surface import leave_surface, offset_position
 from ..jit import function
 from .mis import balance
+from .recording import HIT, record
 from .subpath import is_on_side
 
 
@@ -46,7 +50,7 @@ def _connect(emitters, scene, vertex, wavelengths, stream, pair, u_select):
     material = scene.materials[vertex.surface.material]
     emitter = emitters.records[choose_emitter(emitters.alias, u_select)]
     u, v = random_pair(stream, pair)
-    point = sample_emitter(scene.needs, scene.geometry, emitter, vertex.surface.position, u, v)
+    point = sample_emitter(scene, emitter, vertex.surface.position, u, v)
     towards = point.position - vertex.surface.position
     if point.pdf_solid_angle == 0.0 or not is_emitting_towards(emitter, point.normal, -towards):
         return Connection(black(wavelengths), 0, 0.0)
@@ -62,22 +66,23 @@ def _connect(emitters, scene, vertex, wavelengths, stream, pair, u_select):
     f = evaluate_bsdf(scene.needs, material, scene.spectra, wavelengths, vertex.wo, wi)
     pdf_light = point.pdf_solid_angle * emitter.pdf_select
     # The balance heuristic over the density: w / p = 1 / (p + p').
-    weight = abs(wi.z) / (pdf_light + pdf_scatter)
-    radiance = emitted_radiance(scene.spectra, emitter, wavelengths) * f * weight
-    return Connection(radiance, 1, balance(pdf_light, pdf_scatter))
+    pdf_hit = pdf_scatter * can_be_hit(scene.needs.surfaceless_emitters, emitter)
+    weight = abs(wi.z) / (pdf_light + pdf_hit)
+    radiance = emitted_radiance(scene, emitter, -wi_world, wavelengths) * f * weight
+    return Connection(radiance, 1, balance(pdf_light, pdf_hit))
 
 
 @function
-def radiance_of_hit(scene, surface, path, wavelengths):
+def radiance_of_hit(scene, surface, path, length, wavelengths):
     """Radiance that the surface hit by `path` emits against it, with the MIS weight of having been hit: a `Connection`.
 
     The weight is 1 where no emitter could have been sampled: behind the camera and delta lobes.
     """
-    return _of_hit(scene.emitters, scene, surface, path, wavelengths)
+    return _of_hit(scene.emitters, scene, surface, path, length, wavelengths)
 
 
 @function
-def _of_hit(emitters, scene, surface, path, wavelengths):
+def _of_hit(emitters, scene, surface, path, length, wavelengths):
     if emitters is None:
         return Connection(black(wavelengths), 0, 0.0)
     if surface.emitter < 0:
@@ -85,11 +90,47 @@ def _of_hit(emitters, scene, surface, path, wavelengths):
     emitter = emitters.records[surface.emitter]
     if not is_emitting_towards(emitter, surface.normal, -path.direction):
         return Connection(black(wavelengths), 0, 0.0)
-    radiance = emitted_radiance(scene.spectra, emitter, wavelengths)
+    if is_hidden(scene.needs.hidden_emitters, emitter, length):
+        return Connection(black(wavelengths), 0, 0.0)
+    radiance = emitted_radiance(scene, emitter, -path.direction, wavelengths)
     if path.pdf_solid_angle == 0.0:
         return Connection(radiance, 0, 1.0)
-    pdf_light = pdf_emitter(
-        scene.needs, scene.geometry, emitter, path.reference, surface.position, surface.normal
-    )
+    pdf_light = pdf_emitter(scene, emitter, path.reference, surface.position, surface.normal)
     weight = balance(path.pdf_solid_angle, pdf_light)
     return Connection(radiance * weight, 0, weight)
+
+
+@function
+def radiance_of_background(scene, path, length, place, tables):
+    """Radiance that `path`, which leaves the scene, finds at infinity, with the MIS weight of having found it.
+
+    That of each emitter is noted in the `TechniqueTables`, if there are any.
+    """
+    return _of_background(scene.emitters, scene, path, length, place, tables)
+
+
+@function
+def _of_background(emitters, scene, path, length, place, tables):
+    if emitters is None:
+        return black(place.wavelengths)
+    return _sum_of_background(emitters.background, emitters.records, scene, path, length, place, tables)
+
+
+@function
+def _sum_of_background(first, records, scene, path, length, place, tables):
+    total = black(place.wavelengths)
+    if first is None:
+        return total
+    for i in range(first, records.shape[0]):
+        emitter = records[i]
+        if is_in_background(emitter, path.direction) and not is_hidden(
+            scene.needs.hidden_emitters, emitter, length
+        ):
+            weight = 1.0
+            if path.pdf_solid_angle > 0.0:
+                pdf_light = pdf_emitter(scene, emitter, path.reference, path.reference, -path.direction)
+                weight = balance(path.pdf_solid_angle, pdf_light)
+            radiance = emitted_radiance(scene, emitter, -path.direction, place.wavelengths) * weight
+            total = total + radiance
+            record(tables, scene.spectra, place, HIT, length, length, path.throughput * radiance, weight)
+    return total

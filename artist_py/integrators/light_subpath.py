@@ -89,6 +89,8 @@ def _walk(setup, thread, index, stream, wavelengths, emitter, start, path):
         cos_in = abs(dot(path.direction, surface.normal))
         partial = _arrived(scene, emitter, start, path, surface, partial, length, cos_in)
         vertex = vertex_at(scene, surface, path)
+        if not vertex.is_sampled_back:  # no eye walk could go back there
+            break
         survival = local_survival(scene, vertex, wavelengths)
         pair = FIRST_VERTEX + (length - 1) * PAIRS_PER_VERTEX
         if not is_delta_bsdf(material):

@@ -88,7 +88,7 @@ def trace_pixel(scene, camera, pixel_filter, sensing, limits, work, x, y, image,
     u, v = random_pair(stream, FILM)
     film_x, film_y, film_weight = sample_film(pixel_filter, x, y, u, v)
     lens_u, lens_v = lens_numbers(camera.lens, stream)
-    origin, direction = camera_ray(camera, film_x, film_y, lens_u, lens_v)
+    _, origin, direction = camera_ray(camera, film_x, film_y, lens_u, lens_v)
     wavelengths, weights = wavelengths_of_path(sensing, stream, WAVELENGTH)
     row, column = y - work.crop[2], x - work.crop[0]
     place = Place(row, column, wavelengths, weights * film_weight)

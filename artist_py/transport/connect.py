@@ -19,7 +19,7 @@ from ..geometry.embree import is_occluded
 from ..geometry.surface import leave_surface, offset_position
 from ..jit import function
 from .mis import bracket, weight_of_connection, weight_of_light_image, weight_of_next_event
-from .subpath import adjoint_factor, is_on_side
+from .subpath import adjoint_factor, is_on_side, on_geometric_side
 
 
 class Scattering(NamedTuple):
@@ -38,17 +38,25 @@ def scattering_towards(scene, vertex, wi_world, wavelengths, survival, light_wal
     material = scene.materials[vertex.surface.material]
     smooth = scene.needs.smooth_triangles
     wi = to_local(vertex.frame, wi_world)
+    agrees = is_on_side(smooth, vertex.surface, wi_world, wi)
+    wi = on_geometric_side(smooth, vertex.surface, wi_world, wi)
     pdf = pdf_bsdf(scene.needs, material, vertex.wo, wi)
-    is_black = pdf == 0.0 or not is_on_side(smooth, vertex.surface, wi_world, wi)
+    pdf_rev = pdf_bsdf(scene.needs, material, wi, vertex.wo)
     f = evaluate_bsdf(scene.needs, material, scene.spectra, wavelengths, vertex.wo, wi)
     adjoint = adjoint_factor(light_walk, smooth, vertex, wi_world, wi)
     return Scattering(
         f * (abs(wi.z) * adjoint),
-        pdf * survival,
-        pdf_bsdf(scene.needs, material, wi, vertex.wo) * survival,
+        pdf * survival if agrees else 0.0,
+        pdf_rev * survival if vertex.is_sampled_back else 0.0,
         abs(dot(wi_world, vertex.surface.normal)),
-        is_black,
+        pdf == 0.0 or not (agrees or _may_leave(light_walk)),
     )
+
+
+@function
+def _may_leave(light_walk):
+    """Whether light goes into directions on whose side the normals disagree: from a light walk's vertex it does."""
+    return light_walk is not None
 
 
 @function

@@ -8,6 +8,8 @@ from scipy import stats
 from artist_py.cli.main import main
 from artist_py.film.color import RGB_TO_XYZ
 from artist_py.film.reading import read_image
+from artist_py.scene.compile import compile_scene
+from artist_py.scene.reader import read_scene_text
 
 ROUNDING = 2e-6  # of float32 sums, relative to the sum of all sizes
 CAMERA = {
@@ -99,6 +101,18 @@ class TestSums:
         assert result.film.rgb.any()
         assert_adds_up(result.techniques.weighted, result.film.rgb)
 
+    @pytest.mark.parametrize("integrator", ["pt", "vcm"])
+    def test_emitters_without_a_surface(self, integrator):
+        emitters = [
+            {"type": "environment", "spectrum": 0.3},
+            {"type": "directional", "direction": [0.3, 1, -0.5], "spectrum": 1.0, "angle": 5.0},
+            {"type": "point", "position": [-0.5, -0.2, 0.3], "spectrum": 0.2},
+        ]
+        graph = read_scene_text(room_file(integrator, FILMS["all of it"], emitters=emitters))
+        result = render(compile_scene(graph), 3, techniques=True)
+        assert result.techniques.weighted[0].any()  # the environment, seen from outside
+        assert_adds_up(result.techniques.weighted, result.film.rgb)
+
     def test_longer_paths_share_images(self):
         apart = render(room("vcm"), 2, techniques=True)
         together = render(room("vcm"), 2, techniques=True, technique_length=3)
@@ -153,20 +167,28 @@ class TestUnweighted:
         assert abs(difference) < stats.t.isf(5e-5, self.RENDERS - 1) * error + bias * expected.mean()
 
 
-def test_files(tmp_path):
+def room_file(integrator, film, **more):
+    """The room as the text of a scene file."""
     lines = {
-        "film": FILMS["cropped inside"],
+        "film": film,
         "camera": CAMERA,
-        "render": {"sampler": "independent", "max_path_length": 5, **METHODS["vcm"]},
+        "render": {
+            "integrator": integrator, "sampler": "independent", "max_path_length": 5, **METHODS[integrator]
+        },
         "materials": MATERIALS,
         "shapes": room_shapes(INSIDE),
-    }
+        **more,
+    }  # fmt: skip
+    return "\n".join(f"{key} = {toml(value)}" for key, value in lines.items())
+
+
+def test_files(tmp_path):
     file, output = tmp_path / "room.toml", tmp_path / "image.exr"
-    file.write_text("\n".join(f"{key} = {toml(value)}" for key, value in lines.items()))
+    file.write_text(room_file("vcm", FILMS["cropped inside"]))
     stale = tmp_path / "image.techniques" / "length_05.exr"
     stale.parent.mkdir()
     stale.write_text("of an earlier render")
-    options = ["--integrator", "vcm", "--iterations", "2", "--techniques", "--technique-length", "4", "-q"]
+    options = ["--iterations", "2", "--techniques", "--technique-length", "4", "-q"]
     assert main(["render", str(file), "-o", str(output), *options]) == 0
     image = read_image(output)
     assert not stale.exists()

@@ -12,6 +12,7 @@ from artist_py.jit import kernel
 from artist_py.scene.compile import compile_scene
 from artist_py.scene.reader import read_scene_text
 from artist_py.transport.next_event import radiance_of_background
+from artist_py.transport.recording import Place
 from artist_py.transport.subpath import Path
 
 # Functions that only the code of the kind calls; the LLVM names every function that was compiled for a kernel.
@@ -38,7 +39,8 @@ def use_everything(scene, path, wavelengths):
     density = pdf_emitter(scene, emitter, path.origin, point.position, point.normal)
     density += emission_over_next_event(scene, emitter, point, point.position - path.origin, 1.0)
     radiance = emitted_radiance(scene, emitter, start.direction, wavelengths)
-    return density, radiance + radiance_of_background(scene, path, 1, wavelengths)
+    place = Place(0, 0, wavelengths, wavelengths)
+    return density, radiance + radiance_of_background(scene, path, 1, place, None)
 
 
 def scene_with(emitters):

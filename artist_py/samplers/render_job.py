@@ -10,6 +10,7 @@ from ..integrators.methods import METHODS
 from .aovs import render_aovs
 from .backwards import BackwardsSampler
 from .memory import band_edges, crop_of, light_paths_within, memory_estimate
+from .reference import ReferenceSampler
 from .stochastic import StochasticSampler
 
 PROGRESS_SECONDS = 0.25
@@ -80,6 +81,8 @@ def render(compiled, settings, observer=None, stop=None):
 
 def sampler_for(compiled, film, settings, observer):
     """The image sampler that drives the scene's integrator, within the memory that `settings` allows."""
+    if compiled.graph.render.integrator == "reference":
+        return ReferenceSampler(compiled, film, settings.threads)
     light_paths = light_paths_within(compiled, settings, observer.warning)
     if compiled.graph.render.integrator in METHODS:
         return BackwardsSampler(compiled, film, settings.threads, light_paths)

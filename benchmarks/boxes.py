@@ -1,6 +1,6 @@
-"""Error against CPU seconds of the bidirectional methods on the two reference boxes, and pairs of subpaths per CPU second.
+"""Error against CPU seconds of all methods on the two reference boxes, and pairs of subpaths per CPU second.
 
-    python -m benchmarks.boxes REFERENCES [--integrators pt,bpt,ppm,vcm] [--seconds 5,10,20,40] [--boxes 1,4] [--size 512]
+    python -m benchmarks.boxes REFERENCES [--integrators pt,bpt,ppm,vcm] [--seconds 5,10,20,40] [--boxes 1,4]
 
 REFERENCES is a folder with box_s1.npz and box_s4.npz: 256 x 256 linear RGB, keys "vcm" and "bpt", path length up to 10.
 They were rendered in RGB. So are ours here: the scene is compiled over four bins of 1 nm that stand for R, G, B and
@@ -38,9 +38,9 @@ def rgb_scene(name, integrator, size):
     )
     spectra, materials = compiled.spectra, compiled.scene.materials.array
     spectra[:3] = np.eye(4)[:3]
-    used = [name for name in compiled.graph.materials if _is_used(compiled, name)]
-    for row, name in zip(materials[1:], used, strict=True):
-        reflectance = getattr(compiled.graph.materials[name], "reflectance", None)
+    used = [each for key, each in compiled.graph.materials.items() if _is_used(compiled, key)]
+    for row, material in zip(materials[1:], used, strict=True):
+        reflectance = getattr(material, "reflectance", None)
         if isinstance(reflectance, Rgb):
             spectra[row["reflectance"], :3] = reflectance.rgb
     compiled.nodes[:] = np.linspace(FIRST_NM, FIRST_NM + 4, len(compiled.nodes))
@@ -103,7 +103,10 @@ def main():
             result = measure(box, integrator, references, seconds, options.size)
             results.append(result)
             errors = ", ".join(f"{row['cpu_seconds']:.0f} s {row['relmse']:.4f}" for row in result["rows"])
-            print(f"  {integrator}: {result['pairs_per_cpu_second']:.0f} pairs / CPU s; relMSE {errors}", flush=True)
+            print(
+                f"  {integrator}: {result['pairs_per_cpu_second']:.0f} pairs / CPU s; relMSE {errors}",
+                flush=True,
+            )
     (FOLDER / "results" / "boxes.json").write_text(json.dumps(results, indent=1) + "\n")
 
 

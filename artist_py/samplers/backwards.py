@@ -42,6 +42,19 @@ def radius_of(first, alpha, iteration, schedule="knaus-zwicker"):
     return first * math.exp(0.5 * log_ratio)
 
 
+def merge_radius(compiled, iteration):
+    """Merge radius of an iteration in render space."""
+    merging, space, camera = compiled.graph.render.merging, compiled.space, compiled.graph.camera
+    scene_radius = space.radius * space.scale
+    if merging.radius_pixels is None:
+        first = merging.radius * scene_radius
+    else:
+        pixel = float(np.linalg.norm(compiled.camera.right.values))
+        first = merging.radius_pixels * pixel * math.hypot(*camera.view()) * space.scale
+    radius = radius_of(first, merging.alpha, iteration, merging.schedule)
+    return max(radius, SMALLEST_RADIUS * scene_radius)
+
+
 class BackwardsSampler(StochasticSampler):
     """Drives a bidirectional method over a film; a context manager, because it owns threads."""
 
@@ -119,7 +132,7 @@ class BackwardsSampler(StochasticSampler):
         compiled = self.compiled
         scene, sensing = self.scene_and_sensing(iteration, self.bands)
         work = Pass(self.seed, iteration, self.stratified_pairs, self.crop, self.width, Table(progress))
-        radius = self._radius(iteration)
+        radius = merge_radius(compiled, iteration)
         method = method_of(
             self.method_name,
             self.n_pixels,
@@ -131,18 +144,6 @@ class BackwardsSampler(StochasticSampler):
         stores = Stores(self.light, self.eye, self.splats, self.paths, Table(resume), self.technique_tables)
         camera, pixel_filter = compiled.camera, compiled.pixel_filter
         return Setup(scene, camera, pixel_filter, sensing, self.limits, work, method, stores), radius
-
-    def _radius(self, iteration):
-        """Merge radius in render space."""
-        merging, space, camera = self.merging, self.compiled.space, self.compiled.graph.camera
-        scene_radius = space.radius * space.scale
-        if merging.radius_pixels is None:
-            first = merging.radius * scene_radius
-        else:
-            pixel = float(np.linalg.norm(self.compiled.camera.right.values))
-            first = merging.radius_pixels * pixel * math.hypot(*camera.view()) * space.scale
-        radius = radius_of(first, merging.alpha, iteration, merging.schedule)
-        return max(radius, SMALLEST_RADIUS * scene_radius)
 
     def _grid(self, n_photons, radius):
         """An empty grid for so many photons."""

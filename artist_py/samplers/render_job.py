@@ -11,6 +11,7 @@ from ..integrators.methods import METHODS
 from .aovs import render_aovs
 from .backwards import BackwardsSampler
 from .memory import band_edges, crop_of, light_paths_within, memory_estimate
+from .reference import ReferenceSampler
 from .stochastic import StochasticSampler
 from .techniques import TechniqueRecorder, techniques_of_render
 
@@ -86,6 +87,8 @@ def render(compiled, settings, observer=None, stop=None):
 
 def sampler_for(compiled, film, settings, observer):
     """The image sampler that drives the scene's integrator, within the memory that `settings` allows."""
+    if compiled.graph.render.integrator == "reference":
+        return ReferenceSampler(compiled, film, settings.threads)
     light_paths = light_paths_within(compiled, settings, observer.warning)
     recorder = None
     if settings.techniques:

@@ -32,8 +32,8 @@ from artist_py.scene.spectrum_types import Constant, RefractiveIndex, Spectrum
 from artist_py.scene.transforms import are_parallel, direction, normalized, point
 
 FILTER_RADIUS = {"box": 0.5, "tent": 1.0, "gaussian": 1.5, "blackman-harris": 1.5, "mitchell": 2.0}  # pixels
-INTEGRATORS = ("pt", "lt", "bpt", "ppm", "bpm", "vcm")
-MERGES = ("ppm", "bpm", "vcm")  # those that need all paths of an iteration to share their wavelengths
+INTEGRATORS = ("pt", "lt", "bpt", "ppm", "bpm", "vcm", "reference")
+MERGES = ("ppm", "bpm", "vcm", "reference")  # those that need all paths of an iteration to share their wavelengths
 LONGEST_STORED = 1000  # edges of subpaths whose vertices are stored
 # cd/m2 of a flat spectrum of radiance 1: 683.002 lm/W times the integral of ybar.
 WHITE_LUMINANCE = {"CIE 1931 2": 72983.4866019817, "CIE 1964 10": 79680.2951650147}
@@ -136,6 +136,16 @@ class Merging(Node):
 
 
 @node
+class BruteForce(Node):
+    """[render.reference]: the brute-force integrator "reference", for a few pixels."""
+
+    mode: str = key(Choice(("vcm", "bdpt", "bdpm")), "vcm")  # all techniques, none that merges, only those that merge
+    light_samples: int | None = key(Number(at_least=0, whole=True), None)  # light subpaths; default: one per pixel
+    eye_samples: int = key(_count, 1)  # eye subpaths per pixel
+    min_path_length: int = key(_count, 1)  # edges; shorter paths are left out
+
+
+@node
 class Render(Node):
     """[render]: how the image is computed."""
 
@@ -154,6 +164,7 @@ class Render(Node):
     sampler: str = key(Choice(("sobol", "independent")), "sobol")
     heuristic: str = key(Choice(("balance", "power")), "balance")  # of bidirectional methods; power: beta = 2
     merging: Merging = key(Table(Merging), Merging())
+    reference: BruteForce = key(Table(BruteForce), BruteForce())
 
     def __post_init__(self):
         if self.wavelengths is None:

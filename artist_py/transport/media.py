@@ -65,7 +65,8 @@ def media_beyond(needed, material, is_entering, media):
         return media
     if material.kind != DIELECTRIC:
         return media
-    return enter_medium(media, material.medium) if is_entering else leave_medium(media, material.medium)
+    medium = int(material.medium)  # in Python a narrow integer would keep `media` narrow
+    return enter_medium(media, medium) if is_entering else leave_medium(media, medium)
 
 
 @function

@@ -1,6 +1,7 @@
 """The backwards sampler: determinism, stores that grow, radii, light subpaths per pixel, memory."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -70,7 +71,7 @@ def test_every_light_subpath_belongs_to_one_pixel(light_paths, offset):
     method = type("Method", (), {"light_paths": light_paths, "offset": offset})
     ranges = [light_paths_of(method, index) for index in range(1000)]
     assert ranges[0][0] == 0
-    assert all(before[1] == after[0] for before, after in zip(ranges, ranges[1:], strict=False))
+    assert all(before[1] == after[0] for before, after in pairwise(ranges))
     assert abs(ranges[-1][1] - 1000 * light_paths) <= 1
 
 

@@ -1,0 +1,141 @@
+"""Weights of multiple importance sampling by brute force: every technique's density as a product over the whole path.
+
+This is theory (1.3) and (1.4) as they stand, and shares nothing with the recurrences of transport/mis.py, whose oracle
+it is. p>_i and p<_i are the area densities of vertex x_i when a subpath from the light or from the eye has found it.
+"""
+
+import math
+
+from ..bsdf.dispatch import pdf_bsdf
+from ..bsdf.thin_dielectric import sheet_reflectance
+from ..cameras.sensor import pdf_camera_direction
+from ..core.frame import to_local
+from ..core.fresnel import fresnel_dielectric
+from ..core.spectra import ior_of_lane, lane_of
+from ..core.vector import dot, lane_count, lane_sum
+from ..emitters.dispatch import pdf_emitter
+from ..emitters.emission import pdf_emission_of_hit
+from ..scene.tables import DIELECTRIC, THIN_DIELECTRIC
+from ..transport.subpath import is_on_side, vertex_on
+
+HIT, NEE, VC, LT, VM = "hit", "nee", "vc", "lt", "vm"
+
+
+def light_densities(scene, wavelengths, path):
+    """p>_i of every vertex; 0 for the lens, which light subpaths cannot hit.
+
+    The density of the first direction stands with that of the first point: they never come alone.
+    """
+    nodes, edges = path.nodes, path.edges
+    found = [
+        pdf_emission_of_hit(scene, emitter_of(scene, path), nodes[0].surface, -edges[0].direction),
+        edges[0].cos_end / edges[0].distance_squared,
+    ]
+    for i in range(1, len(edges) - 1):
+        edge = edges[i]
+        density = pdf_direction(scene, wavelengths, nodes[i], -edges[i - 1].direction, edge.direction)
+        found.append(density * edge.cos_end / edge.distance_squared)
+    return [*found[: len(edges)], 0.0]
+
+
+def eye_densities(scene, camera, n_pixels, wavelengths, path):
+    """p<_i of every vertex; 1 for the lens, since all techniques find its points with the same density (1.22)."""
+    nodes, edges = path.nodes, path.edges
+    found = [1.0]
+    for i in reversed(range(len(edges))):
+        edge = edges[i]
+        if i == len(edges) - 1:
+            density = pdf_camera_direction(camera, n_pixels, -edge.direction)
+        else:
+            density = pdf_direction(scene, wavelengths, nodes[i + 1], edges[i + 1].direction, -edge.direction)
+        found.append(density * edge.cos_start / edge.distance_squared)
+    return found[::-1]
+
+
+def pdf_direction(scene, wavelengths, node, wo_world, wi_world):
+    """Density of a walk that came from `wo_world` to go on in `wi_world`, roulette included, sr^-1.
+
+    Of a delta lobe it is the factor of the delta function. That one stands in the measure n^2 cos dw, which smooth
+    interfaces conserve, so that it is the same for both walks and cancels; what stays is the lobe's probability times
+    n^2 cos on the side left in. Its ratio for the two walks is (1.24).
+    """
+    smooth = scene.needs.smooth_triangles
+    wo, wi = vertex_on(smooth, node.surface, wo_world).wo, to_local(node.frame, wi_world)
+    if not is_on_side(smooth, node.surface, wi_world, wi):
+        return 0.0
+    material = scene.materials[node.surface.material]
+    if not node.is_delta:
+        return pdf_bsdf(scene.needs, material, wo, wi) * node.survival
+    index = ior_on_side(scene, wavelengths, material, node, wi)
+    cosine = abs(dot(wi_world, node.surface.normal))
+    return lobe_probability(scene, wavelengths, material, node, wo, wi) * index**2 * cosine * node.survival
+
+
+def ior_on_side(scene, wavelengths, material, node, w):
+    """Index of refraction of the medium that the local direction `w` lies in, at the first wavelength."""
+    if material.kind != DIELECTRIC or w.z > 0.0:
+        return lane_of(node.outside, 0)
+    if material.is_dispersive:
+        return ior_of_lane(scene.spectra, material.eta, wavelengths, 0)
+    return float(material.ior)
+
+
+def lobe_probability(scene, wavelengths, material, node, wo, wi):
+    """Probability of the delta lobe that leads from `wo` to `wi`; with dispersion for a single wavelength only."""
+    if material.kind == DIELECTRIC:
+        sides = [ior_on_side(scene, wavelengths, material, node, w) for w in (wo, -wo)]
+        reflectance, _ = fresnel_dielectric(abs(wo.z), sides[1] / sides[0])
+    elif material.kind == THIN_DIELECTRIC:
+        ratio = wavelengths if scene.needs.dispersion else None
+        lanes = sheet_reflectance(ratio, material, scene.spectra, wavelengths, wo, node.outside)
+        reflectance = lane_sum(lanes) / lane_count(lanes)
+    else:
+        return 1.0
+    return reflectance if wo.z * wi.z > 0.0 else 1.0 - reflectance
+
+
+def emitter_of(scene, path):
+    """Record of the emitter that the path begins on."""
+    return scene.emitters.records[path.nodes[0].surface.emitter]
+
+
+def next_event_density(scene, path):
+    """pc_0: density, m^-2, of the path's first vertex in next-event estimation from its second."""
+    first, edge, emitter = path.nodes[0].surface, path.edges[0], emitter_of(scene, path)
+    density = pdf_emitter(scene, emitter, path.second, first.position, first.normal)
+    return density * edge.cos_start / edge.distance_squared
+
+
+def technique_densities(scene, camera, counts, n_pixels, wavelengths, path):
+    """n p of every technique that finds the path: `{(kind, s): density}`, theory (1.3).
+
+    s is the number of light vertices, or the index of the vertex merged at.
+    """
+    light = light_densities(scene, wavelengths, path)
+    eye = eye_densities(scene, camera, n_pixels, wavelengths, path)
+    k = len(path.edges)
+    can_join = [0 < i < k and not node.is_delta for i, node in enumerate(path.nodes)]
+    found = {(HIT, 0): counts.hit * math.prod(eye)}
+    if k > 1 and can_join[1]:
+        found[NEE, 1] = counts.nee * next_event_density(scene, path) * math.prod(eye[1:])
+    if k > 1 and can_join[k - 1]:
+        found[LT, k] = counts.lt * math.prod(light[:k])
+    for s in range(2, k):
+        if can_join[s - 1] and can_join[s]:
+            found[VC, s] = counts.vc * math.prod(light[:s]) * math.prod(eye[s:])
+    for m in range(1, k):
+        if can_join[m]:
+            found[VM, m] = counts.vm_area * math.prod(light[: m + 1]) * math.prod(eye[m:])
+    return found
+
+
+def weight_of(technique, densities, power=1):
+    """Weight of `technique` by the balance (`power` 1) or power heuristic (1.4).
+
+    A method without hits leaves to them, with weight 1, what nothing else finds (theory 1.9).
+    """
+    largest = max(densities.values())
+    if largest == 0.0:
+        return 1.0 if technique[0] == HIT else 0.0
+    shares = {name: (density / largest) ** power for name, density in densities.items()}
+    return shares[technique] / sum(shares.values())

@@ -1,0 +1,118 @@
+"""Scenes of the oracle tests: each has what makes densities differ from the plain case."""
+
+from pathlib import Path
+
+from rendering import diffuse, look, scene, shape
+
+import artist_py
+
+CORNELL = Path(__file__).parents[2] / "scenes" / "cornell_box.toml"
+WHITE, GREY = diffuse(0.8), diffuse(0.3)
+MATERIALS = {
+    "white": WHITE,
+    "grey": GREY,
+    "rough": {"type": "oren-nayar", "reflectance": 0.7, "roughness": 30},
+    "mirror": {"type": "mirror", "reflectance": 0.9},
+    "gold": {"type": "conductor", "metal": "Au"},
+    "glass": {"type": "dielectric", "ior": 1.5},
+    "water": {"type": "dielectric", "ior": 1.33, "priority": -1},
+    "pane": {"type": "thin-dielectric", "ior": 1.5},
+    "nothing": {"type": "none"},
+}
+SMALL = {"resolution": [8, 8]}
+LENGTH = 7
+
+
+def cornell():
+    """The Cornell box."""
+    overrides = {
+        "film.resolution": [8, 8],
+        "render.max_path_length": LENGTH,
+        "render.wavelength_range": [600, 601],
+    }
+    return artist_py.load_scene(str(CORNELL), overrides)
+
+
+def room(*shapes, camera=None, length=LENGTH):
+    """Shapes in a closed box of 4 x 4 x 4 around the origin."""
+    walls = shape("box", "white", center=[0, 0, 0], size=[4, 4, 4])
+    used = {each["material"] for each in shapes if "material" in each} | {"white"}
+    return scene(
+        [walls, *shapes],
+        materials={name: MATERIALS[name] for name in sorted(used)},
+        camera=camera or look([0, -1.9, 0], [0, 0, 0], 80.0),
+        film=SMALL,
+        render={"max_path_length": length, "hero_count": 1},
+    )
+
+
+def mixed(camera=None):
+    """Mirror, metal, glass and a pane among rough quadrics; lights: a sphere, a two-sided disk and a cylinder."""
+    return room(
+        shape("sphere", "mirror", center=[-0.9, 0.3, -0.8], radius=0.6),
+        shape("sphere", "glass", center=[0.6, -0.2, -0.7], radius=0.7),
+        shape("sphere", "grey", center=[0.6, -0.2, -0.7], radius=0.3),
+        shape("cone", "gold", base=[0, 1, -2], apex=[0, 1, -0.6], radius=0.7),
+        shape("rectangle", "pane", corner=[-1.9, -0.9, -1.9], edges=[[1.5, 0.2, 0], [0, 0, 2.2]]),
+        shape("cylinder", "rough", base=[1.5, 1.2, -2], top=[1.4, 1, 0.2], radius=0.3),
+        shape("sphere", center=[0.4, 0.5, 0.9], radius=0.4, emission=2),
+        shape(
+            "disk", "rough", center=[-1, -0.5, 1.2], normal=[0.2, 0, -1], radius=0.5,
+            emission={"spectrum": 3, "sides": "both"},
+        ),
+        shape("cylinder", base=[-1.5, 1.4, 0.3], top=[-0.5, 1.4, 0.4], radius=0.2, emission=1.5),
+        camera=camera,
+    )  # fmt: skip
+
+
+def nested():
+    """A glass ball with a diffuse and a light inside, standing in water; a surface that is not there."""
+    return room(
+        shape("box", "water", center=[0, 0.4, -1], size=[3, 2, 1.6]),
+        shape("sphere", "glass", center=[-0.5, 0.3, -0.6], radius=0.7),
+        shape("sphere", "grey", center=[-0.6, 0.3, -0.6], radius=0.25),
+        shape("sphere", "nothing", center=[0.9, 0.1, -0.2], radius=0.6),
+        shape("sphere", center=[-0.3, 0.5, -0.3], radius=0.1, emission=9),
+        shape("rectangle", corner=[-0.5, -0.5, 1.9], edges=[[0, 1, 0], [1, 0, 0]], emission=5),
+    )
+
+
+def smooth():
+    """Coarse balls with interpolated normals: geometric and shading normals differ by up to 20 degrees."""
+    grooved = {"depth": 0.1, "grooves": 3, "segments": 10}
+    return room(
+        shape("grooved-sphere", "rough", center=[-0.8, 0.2, -0.5], radius=0.8, **grooved),
+        shape("grooved-sphere", "glass", center=[0.9, 0.1, -0.6], radius=0.7, **grooved),
+        shape("grooved-sphere", "mirror", center=[0.6, 1.0, 0.9], radius=0.6, **grooved),
+        shape("rectangle", corner=[-0.8, -0.5, 1.9], edges=[[0, 1, 0], [1, 0, 0]], emission=5),
+    )
+
+
+def far():
+    """A camera so far away that its rays start on a sphere around the scene."""
+    floor = shape("rectangle", "white", corner=[-1, -1, 0], edges=[[2, 0, 0], [0, 2, 0]])
+    ball = shape("sphere", "grey", center=[0.3, 0, 0.4], radius=0.4)
+    lamp = shape("sphere", center=[-0.5, 0, 0.8], radius=0.2, emission=3)
+    return scene(
+        [floor, ball, lamp],
+        materials={"white": WHITE, "grey": GREY},
+        camera=look([0, -90, 90], [0, 0, 0], 1.0),
+        film=SMALL,
+        render={"max_path_length": 4, "hero_count": 1},
+    )
+
+
+def through_lens():
+    """The mixed scene through a thin lens."""
+    camera = look([0, -1.9, 0], [0, 0, 0], 80.0, type="thin-lens", aperture_radius=0.1, focus_distance=2.0)
+    return mixed(camera)
+
+
+SCENES = {
+    "cornell": cornell,
+    "mixed": mixed,
+    "lens": through_lens,
+    "nested": nested,
+    "smooth": smooth,
+    "far": far,
+}

@@ -1,0 +1,249 @@
+"""The kernels' own walks as plain Python, and every weight that they give along the way together with its full path.
+
+Nothing is evaluated twice: the functions that kernels call are replaced by ones that call them and take notes. Stored
+vertices and photons are float64 here, so that what is read again is what was stored.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from artist_py.cameras.perspective import camera_ray, sample_film
+from artist_py.cameras.sensor import pdf_camera_direction
+from artist_py.core.rng import random_pair, stream_of
+from artist_py.core.table import Table
+from artist_py.integrators import eye_subpath, light_subpath
+from artist_py.integrators.methods import method_of
+from artist_py.integrators.pair import LIGHT_SEED, Setup, Stores, path_dtype
+from artist_py.integrators.path_tracing import FILM, Pass, lens_numbers
+from artist_py.integrators.reference_paths import (
+    DoubleSpectrum,
+    EmitterHit,
+    FullPath,
+    Subpath,
+    connecting_edge,
+    edge_to,
+    end_node,
+    joined,
+    merged,
+    node_at,
+    path_of_hit,
+)
+from artist_py.transport import connect, merge, photon_grid
+from artist_py.transport.merge import Merging
+from artist_py.transport.mis import Partial
+from artist_py.transport.roulette import Limits, local_survival
+from artist_py.transport.sensing import Sensing
+from artist_py.transport.splats import splat_dtype
+from artist_py.transport.subpath import seen_from, start_path
+from artist_py.transport.vertices import Pool, load_vertex, vertex_dtype
+
+RECORDS = 64
+SEED = 5
+
+
+class Found(NamedTuple):
+    """A weight that a kernel gave to a path."""
+
+    technique: tuple
+    weight: float
+    path: FullPath
+
+
+def doubled(dtype):
+    """The record type with float64 for float32."""
+    fields = []
+    for name in dtype.names:
+        base, shape = (dtype[name].subdtype or (dtype[name], ()))[:2]
+        fields.append((name, "f8" if base == np.float32 else base, shape))
+    return np.dtype(fields)
+
+
+def pool_of(dtype):
+    """A pool of one chunk."""
+    ends, used = np.array([[0, RECORDS]]), np.zeros(1, np.int32)
+    return Pool(
+        Table(np.zeros(RECORDS, doubled(dtype))), Table(np.zeros(2, np.int64)), Table(ends), Table(used)
+    )
+
+
+def counts_in(method, counts):
+    """The method with other counts; what has none is absent."""
+    techniques = method.techniques._replace(
+        nee=counts.nee > 0 or None,
+        connect=counts.vc > 0 or None,
+        light_image=counts.lt > 0 or None,
+        merge=counts.vm_area > 0 or None,
+        light_paths=True,
+    )
+    return method._replace(techniques=techniques, counts=counts, hits_everything=counts.hit > 0)
+
+
+def setup_of(compiled, counts, wavelengths):
+    """The `Setup` of the kernels, for one light and one eye subpath at a time."""
+    graph = compiled.graph
+    width, height = graph.film.resolution
+    sensing = Sensing(wavelengths * 0.0, None, Table(compiled.nodes), None, None)
+    work = Pass(SEED, 0, 0, (0, width, 0, height), width, None)
+    lanes = len(wavelengths.values)
+    light, eye = pool_of(vertex_dtype(lanes)), pool_of(vertex_dtype(lanes))
+    stores = Stores(light, eye, pool_of(splat_dtype(lanes)), Table(np.zeros(1, path_dtype)), None)
+    method = counts_in(method_of("vcm", width * height, 1.0, 0.0, 1.0), counts)
+    limits = Limits(graph.render.max_path_length, 0)
+    return Setup(
+        compiled.scene, compiled.camera, compiled.pixel_filter, sensing, limits, work, method, stores
+    )
+
+
+class Recorder:
+    """Traces pairs of subpaths and notes every weight; `patch` is pytest's monkeypatch."""
+
+    def __init__(self, patch, compiled, counts, lanes=1):
+        first, last = compiled.wavelength_range
+        self.wavelengths = DoubleSpectrum(first + (last - first) * (np.arange(lanes) + 0.5) / lanes)
+        self.setup, self.patch = setup_of(compiled, counts, self.wavelengths), patch
+        self.found, self.light, self.eye, self.walk = [], None, None, None
+        self._listen_to_walks()
+        self._listen_to_connections()
+        self._listen_to_hits()
+        self._listen(merge, "weight_of_merge", lambda weight, *_: self.merge_weights.append(weight))
+
+    def _listen(self, module, name, note):
+        """Have `note(result, *arguments)` called after `module.name`."""
+        function = getattr(module, name)
+
+        def listening(*arguments):
+            result = function(*arguments)
+            note(result, *arguments)
+            return result
+
+        self.patch.setattr(module, name, listening)
+
+    def _note(self, technique, weight, path):
+        self.found.append(Found(technique, weight, path))
+
+    # --- walks
+
+    def _listen_to_walks(self):
+        self._listen(light_subpath, "choose_emitter", lambda index, *_: setattr(self, "emitter", index))
+        self._listen(light_subpath, "sample_emission", lambda start, *_: self._begin_light(start))
+        for module in (light_subpath, eye_subpath):
+            self._listen(module, "vertex_at", self._arrive)
+
+    def _begin_light(self, start):
+        node = end_node(start.position, start.normal, start.extent, self.emitter)
+        self.walk = self.light = Subpath([node], [], [], [])
+
+    def _arrive(self, vertex, scene, surface, path):
+        self.walk.edges.append(edge_to(surface, path, self.walk.nodes[-1]))
+        self.walk.nodes.append(node_at(scene, vertex, path.media, self.wavelengths))
+
+    # --- connections
+
+    def _listen_to_connections(self):
+        self._before(light_subpath, "connect_to_camera", lambda *a: setattr(self, "sensor", a[5]))
+        self._listen(connect, "weight_of_light_image", self._note_light_image)
+        self._listen(connect, "choose_emitter", lambda index, *_: setattr(self, "emitter", index))
+        self._before(connect, "emission_over_next_event", lambda *a: setattr(self, "point", a[2]))
+        self._listen(connect, "weight_of_next_event", self._note_next_event)
+        self._before(eye_subpath, "connect_vertices", lambda *a: setattr(self, "length", a[5].length))
+        self._listen(connect, "weight_of_connection", self._note_connection)
+
+    def _before(self, module, name, note):
+        """Have `note(*arguments)` called before `module.name`."""
+        function = getattr(module, name)
+
+        def listening(*arguments):
+            note(*arguments)
+            return function(*arguments)
+
+        self.patch.setattr(module, name, listening)
+
+    def _note_light_image(self, weight, *_):
+        lens = end_node(self.sensor.position, self.setup.camera.forward, 0.0, -1)
+        edge = connecting_edge(self.light.nodes[-1], lens)
+        path = joined(self.light.nodes, self.light.edges, edge, [lens], [])
+        self._note(("lt", len(path.edges)), weight, path)
+
+    def _note_next_event(self, weight, *_):
+        light = end_node(self.point.position, self.point.normal, self.point.extent, self.emitter)
+        edge = connecting_edge(light, self.eye.nodes[-1])
+        self._note(("nee", 1), weight, joined([light], [], edge, self.eye.nodes, self.eye.edges))
+
+    def _note_connection(self, weight, *_):
+        nodes, edges = self.light.nodes[: self.length + 1], self.light.edges[: self.length]
+        edge = connecting_edge(nodes[-1], self.eye.nodes[-1])
+        self._note(
+            ("vc", self.length + 1), weight, joined(nodes, edges, edge, self.eye.nodes, self.eye.edges)
+        )
+
+    # --- hits
+
+    def _listen_to_hits(self):
+        self._before(eye_subpath, "emission_hit", self._note_surface)
+        self._listen(eye_subpath, "emission_hit", self._note_only_way)
+        self._listen(eye_subpath, "weight_of_hit", lambda weight, *_: self._note_hit(weight))
+
+    def _note_surface(self, scene, method, surface, path, *_):
+        edge = edge_to(surface, path, self.eye.nodes[-1])
+        self.hit = EmitterHit(len(self.eye.nodes), surface, edge, None)
+
+    def _note_only_way(self, radiance, scene, method, surface, path, length, partial, is_only_way, *_):
+        if not method.hits_everything and surface.emitter >= 0:
+            self._note_hit(1.0 if is_only_way else 0.0)
+
+    def _note_hit(self, weight):
+        self._note(("hit", 0), weight, path_of_hit(self.eye, self.hit))
+
+    # --- pairs
+
+    def trace(self, pair, x, y):
+        """Trace light subpath number `pair` and an eye subpath of pixel (x, y), connect them, and merge everywhere."""
+        setup = self.setup
+        for pool in setup.stores[:3]:
+            pool.ends[0, 0] = pool.used[0] = 0
+        with np.errstate(over="ignore"):
+            stream = stream_of(SEED ^ LIGHT_SEED, pair, pair, 0)
+            light_subpath.trace_light_subpath(setup, 0, 0, 0, stream, self.wavelengths)
+            self._trace_eye(stream_of(SEED, pair, pair, 0), x, y)
+        self._merge_all()
+
+    def _trace_eye(self, stream, x, y):
+        setup = self.setup
+        camera, counts = setup.camera, setup.method.counts
+        film_x, film_y, film_weight = sample_film(setup.pixel_filter, x, y, *random_pair(stream, FILM))
+        lens_u, lens_v = lens_numbers(camera.lens, stream)
+        lens_point, origin, direction = camera_ray(camera, film_x, film_y, lens_u, lens_v)
+        self.walk = self.eye = Subpath([end_node(lens_point, camera.forward, 0.0, -1)], [], [], [])
+        path = seen_from(start_path(origin, direction, setup.sensing, camera.media), lens_point)
+        density = pdf_camera_direction(camera, setup.method.n_pixels, direction)
+        eye_subpath.trace_eye_subpath(
+            setup, 0, 0, stream, self.wavelengths, path, Partial(counts.lt / density, 0.0), film_weight
+        )
+
+    def _merge_all(self):
+        """Merge every stored eye vertex with every photon, near or not: weights do not ask."""
+        setup = self.setup
+        if setup.method.techniques.merge is None:
+            return
+        smooth = setup.scene.needs.smooth_triangles
+        for eye in setup.stores.eye.records.array[: setup.stores.eye.used[0]]:
+            stored = load_vertex(smooth, eye, setup.sensing.zero)
+            survival = local_survival(setup.scene, stored.vertex, self.wavelengths)
+            for light in setup.stores.light.records.array[: setup.stores.light.used[0]]:
+                self._merge(stored, survival, light)
+
+    def _merge(self, stored, survival, light):
+        setup, i, j = self.setup, stored.length, light.length
+        photon = np.zeros(1, doubled(photon_grid.photon_dtype(len(self.wavelengths.values)))).view(
+            np.recarray
+        )
+        photon_grid._copy(light, photon[0])
+        self.merge_weights = []
+        constants = Merging(1.0, 1.0, 0.0, None)
+        merge._merge(setup.scene, setup.method, constants, photon[0], stored, survival, self.wavelengths)
+        for weight in self.merge_weights:
+            path = merged(
+                self.light.nodes[: j + 1], self.light.edges[:j], self.eye.nodes[: i + 1], self.eye.edges[:i]
+            )
+            self._note(("vm", j), weight, path)

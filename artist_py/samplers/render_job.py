@@ -87,13 +87,13 @@ def render(compiled, settings, observer=None, stop=None):
 
 def sampler_for(compiled, film, settings, observer):
     """The image sampler that drives the scene's integrator, within the memory that `settings` allows."""
-    if compiled.graph.render.integrator == "reference":
-        return ReferenceSampler(compiled, film, settings.threads)
-    light_paths = light_paths_within(compiled, settings, observer.warning)
     recorder = None
+    light_paths = light_paths_within(compiled, settings, observer.warning)
     if settings.techniques:
         techniques = techniques_of_render(compiled.graph.render, settings.technique_length)
         recorder = TechniqueRecorder(techniques, film.height, film.width)
+    if compiled.graph.render.integrator == "reference":
+        return ReferenceSampler(compiled, film, settings.threads)
     if compiled.graph.render.integrator in METHODS:
         return BackwardsSampler(compiled, film, settings.threads, light_paths, recorder)
     return StochasticSampler(compiled, film, settings.threads, recorder)

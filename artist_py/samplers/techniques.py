@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..core.table import Table
+from ..errors import OptionError
 from ..film.accumulation import add_technique_rows
 from ..film.techniques import TechniqueFilm, techniques_of
 from ..integrators.methods import METHODS
@@ -12,9 +13,11 @@ BYTES_PER_VALUE = 2 * (4 + 8)  # weighted and unweighted, of one iteration and o
 
 
 def kinds_of(integrator):
-    """Kinds of techniques that a method has."""
+    """Kinds of techniques that a method has; OptionError for one that does not tell them apart."""
     if integrator == "pt":
         return ("hit", "nee")
+    if integrator not in METHODS:
+        raise OptionError(f"--techniques: integrator {integrator} keeps no images of techniques")
     subset = METHODS[integrator]
     # A method without hits still takes those that no other technique finds.
     present = {

@@ -32,6 +32,7 @@ from artist_py.integrators.reference_paths import (
 from artist_py.transport import connect, merge, photon_grid
 from artist_py.transport.merge import Merging
 from artist_py.transport.mis import Partial
+from artist_py.transport.recording import Place
 from artist_py.transport.roulette import Limits, local_survival
 from artist_py.transport.sensing import Sensing
 from artist_py.transport.splats import splat_dtype
@@ -87,7 +88,7 @@ def setup_of(compiled, counts, wavelengths):
     work = Pass(SEED, 0, 0, (0, width, 0, height), width, None)
     lanes = len(wavelengths.values)
     light, eye = pool_of(vertex_dtype(lanes)), pool_of(vertex_dtype(lanes))
-    stores = Stores(light, eye, pool_of(splat_dtype(lanes)), Table(np.zeros(1, path_dtype)), None)
+    stores = Stores(light, eye, pool_of(splat_dtype(lanes)), Table(np.zeros(1, path_dtype)), None, None)
     method = counts_in(method_of("vcm", width * height, 1.0, 0.0, 1.0), counts)
     limits = Limits(graph.render.max_path_length, 0)
     return Setup(
@@ -217,8 +218,9 @@ class Recorder:
         self.walk = self.eye = Subpath([end_node(lens_point, camera.forward, 0.0, -1)], [], [], [])
         path = seen_from(start_path(origin, direction, setup.sensing, camera.media), lens_point)
         density = pdf_camera_direction(camera, setup.method.n_pixels, direction)
+        place = Place(y, x, self.wavelengths, self.wavelengths)
         eye_subpath.trace_eye_subpath(
-            setup, 0, 0, stream, self.wavelengths, path, Partial(counts.lt / density, 0.0), film_weight
+            setup, 0, 0, stream, place, path, Partial(counts.lt / density, 0.0), film_weight
         )
 
     def _merge_all(self):

@@ -61,6 +61,8 @@ class TestWhichThereAre:
         assert kinds_of("pt") == ("hit", "nee")
         assert kinds_of("ppm") == ("hit", "vm")
         assert kinds_of("vcm") == KINDS
+        with pytest.raises(OptionError, match="reference"):
+            kinds_of("reference")
 
 
 class TestRows:

@@ -23,7 +23,9 @@ from .pair import BSDF, CHOICE, EMITTER, FIRST_VERTEX, PAIRS_PER_VERTEX, ROULETT
 
 
 @function
-def trace_eye_subpath(setup, thread, index, stream, place, path, partial, film_weight):
+def trace_eye_subpath(  # noqa: C901, PLR0915 - one loop, a line or two per step of the walk
+    setup, thread, index, stream, place, path, partial, film_weight
+):
     """Radiance along `path` but for merges, whose vertices are stored with the sample's `film_weight`; a `Walk`."""
     scene, limits, method, wavelengths = setup.scene, setup.limits, setup.method, place.wavelengths
     radiance = black(wavelengths)
@@ -156,7 +158,7 @@ def _is_done(techniques, begins_specular):
 @function
 def _finds_nothing(nee, connects, merge):
     # Nested, because numba prunes a test for None but not a conjunction.
-    if nee is None:
+    if nee is None:  # noqa: SIM102
         if connects is None:  # noqa: SIM102
             if merge is None:
                 return True

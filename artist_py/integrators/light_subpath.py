@@ -70,7 +70,9 @@ def _trace(needed, emitters, setup, thread, index, pixel, stream, wavelengths):
 
 
 @function
-def _walk(setup, thread, index, stream, wavelengths, emitter, start, path):
+def _walk(  # noqa: C901 - one loop, a line or two per step of the walk
+    setup, thread, index, stream, wavelengths, emitter, start, path
+):
     scene, limits, counts = setup.scene, setup.limits, setup.method.counts
     partial = Partial(counts.nee, counts.hit * hit_over_emission(start))
     length, rays, shadow_rays = 1, 0, 0

@@ -123,7 +123,7 @@ def _choice_numbers(emitters, needs, stream, pair):
 @function
 def _numbers_if(alias, dielectric, thin_dielectric, stream, pair):
     # Nested, because numba prunes a test for None but not a conjunction.
-    if alias is None:
+    if alias is None:  # noqa: SIM102
         if dielectric is None:  # noqa: SIM102
             if thin_dielectric is None:
                 return 0.0, 0.0

@@ -21,7 +21,9 @@ from .types import BsdfSample, absorption
 
 
 @function
-def sample_bsdf(needs, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk):
+def sample_bsdf(
+    needs, material, reflectance, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+):
     """A `BsdfSample` for `wo`, from the three uniform numbers `u`, `v`, `w`.
 
     `ratio` is the running r of theory (2.6), or `None` in scenes without dispersion. `ior_outside` is the
@@ -31,12 +33,23 @@ def sample_bsdf(needs, material, spectra, wavelengths, wo, u, v, w, ratio, ior_o
     """
     if is_transmissive(material):
         return _sample_transmissive(
-            needs, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+            needs, material, reflectance, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
         )
     if is_black(needs.one_sided, material, wo):
         return absorption(wo, wavelengths, ratio)
     sample = _sample_reflective(
-        needs, material, spectra, wavelengths, _turned(wo, wo), u, v, w, ratio, ior_outside, light_walk
+        needs,
+        material,
+        reflectance,
+        spectra,
+        wavelengths,
+        _turned(wo, wo),
+        u,
+        v,
+        w,
+        ratio,
+        ior_outside,
+        light_walk,
     )
     return BsdfSample(
         _turned(sample.wi, wo),
@@ -50,58 +63,139 @@ def sample_bsdf(needs, material, spectra, wavelengths, wo, u, v, w, ratio, ior_o
 
 
 @function
-def _sample_reflective(needs, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk):
+def _sample_reflective(
+    needs, material, reflectance, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+):
     kind = material.kind
     if kind == DIFFUSE:
         return sample_diffuse(
-            needs.diffuse, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+            needs.diffuse,
+            material,
+            reflectance,
+            spectra,
+            wavelengths,
+            wo,
+            u,
+            v,
+            w,
+            ratio,
+            ior_outside,
+            light_walk,
         )
     if kind == OREN_NAYAR:
         return sample_oren_nayar(
-            needs.oren_nayar, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+            needs.oren_nayar,
+            material,
+            reflectance,
+            spectra,
+            wavelengths,
+            wo,
+            u,
+            v,
+            w,
+            ratio,
+            ior_outside,
+            light_walk,
         )
     if kind == MIRROR:
         return sample_mirror(
-            needs.mirror, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+            needs.mirror,
+            material,
+            reflectance,
+            spectra,
+            wavelengths,
+            wo,
+            u,
+            v,
+            w,
+            ratio,
+            ior_outside,
+            light_walk,
         )
     if kind == CONDUCTOR:
         return sample_conductor(
-            needs.conductor, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+            needs.conductor,
+            material,
+            reflectance,
+            spectra,
+            wavelengths,
+            wo,
+            u,
+            v,
+            w,
+            ratio,
+            ior_outside,
+            light_walk,
         )
     return absorption(wo, wavelengths, ratio)
 
 
 @function
-def _sample_transmissive(needs, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk):
+def _sample_transmissive(
+    needs, material, reflectance, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+):
     kind = material.kind
     if kind == DIELECTRIC:
         return sample_dielectric(
-            needs.dielectric, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+            needs.dielectric,
+            material,
+            reflectance,
+            spectra,
+            wavelengths,
+            wo,
+            u,
+            v,
+            w,
+            ratio,
+            ior_outside,
+            light_walk,
         )
     if kind == THIN_DIELECTRIC:
         return sample_thin_dielectric(
-            needs.thin_dielectric, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+            needs.thin_dielectric,
+            material,
+            reflectance,
+            spectra,
+            wavelengths,
+            wo,
+            u,
+            v,
+            w,
+            ratio,
+            ior_outside,
+            light_walk,
         )
     if kind == PASS_THROUGH:
         return sample_pass_through(
-            needs.pass_through, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+            needs.pass_through,
+            material,
+            reflectance,
+            spectra,
+            wavelengths,
+            wo,
+            u,
+            v,
+            w,
+            ratio,
+            ior_outside,
+            light_walk,
         )
     return absorption(wo, wavelengths, ratio)
 
 
 @function
-def evaluate_bsdf(needs, material, spectra, wavelengths, wo, wi):
+def evaluate_bsdf(needs, material, reflectance, spectra, wavelengths, wo, wi):
     """f(wo, wi) without the cosine, sr^-1; symmetric in its directions, and zero for what has delta lobes only."""
     if wo.z * wi.z <= 0.0 or is_black(needs.one_sided, material, wo):
         return black(wavelengths)
     kind = material.kind
     if kind == DIFFUSE:
         return evaluate_diffuse(
-            needs.diffuse, material, spectra, wavelengths, _turned(wo, wo), _turned(wi, wo)
+            needs.diffuse, material, reflectance, spectra, wavelengths, _turned(wo, wo), _turned(wi, wo)
         )
     if kind == OREN_NAYAR:
         return evaluate_oren_nayar(
-            needs.oren_nayar, material, spectra, wavelengths, _turned(wo, wo), _turned(wi, wo)
+            needs.oren_nayar, material, reflectance, spectra, wavelengths, _turned(wo, wo), _turned(wi, wo)
         )
     return black(wavelengths)
 
@@ -120,40 +214,52 @@ def pdf_bsdf(needs, material, wo, wi):
 
 
 @function
-def reflectance_bsdf(needs, material, spectra, wavelengths, wo, ior_outside):
+def reflectance_bsdf(needs, material, reflectance, spectra, wavelengths, wo, ior_outside):
     """Share of the light from `wo` that is scattered into all directions, in [0, 1]."""
     if is_transmissive(material):
-        return _transmissive_reflectance(needs, material, spectra, wavelengths, wo, ior_outside)
+        return _transmissive_reflectance(needs, material, reflectance, spectra, wavelengths, wo, ior_outside)
     if is_black(needs.one_sided, material, wo):
         return black(wavelengths)
-    return _reflective_reflectance(needs, material, spectra, wavelengths, _turned(wo, wo), ior_outside)
+    return _reflective_reflectance(
+        needs, material, reflectance, spectra, wavelengths, _turned(wo, wo), ior_outside
+    )
 
 
 @function
-def _reflective_reflectance(needs, material, spectra, wavelengths, wo, ior_outside):
+def _reflective_reflectance(needs, material, reflectance, spectra, wavelengths, wo, ior_outside):
     kind = material.kind
     if kind == DIFFUSE:
-        return reflectance_diffuse(needs.diffuse, material, spectra, wavelengths, wo, ior_outside)
+        return reflectance_diffuse(
+            needs.diffuse, material, reflectance, spectra, wavelengths, wo, ior_outside
+        )
     if kind == OREN_NAYAR:
-        return reflectance_oren_nayar(needs.oren_nayar, material, spectra, wavelengths, wo, ior_outside)
+        return reflectance_oren_nayar(
+            needs.oren_nayar, material, reflectance, spectra, wavelengths, wo, ior_outside
+        )
     if kind == MIRROR:
-        return reflectance_mirror(needs.mirror, material, spectra, wavelengths, wo, ior_outside)
+        return reflectance_mirror(needs.mirror, material, reflectance, spectra, wavelengths, wo, ior_outside)
     if kind == CONDUCTOR:
-        return reflectance_conductor(needs.conductor, material, spectra, wavelengths, wo, ior_outside)
+        return reflectance_conductor(
+            needs.conductor, material, reflectance, spectra, wavelengths, wo, ior_outside
+        )
     return black(wavelengths)
 
 
 @function
-def _transmissive_reflectance(needs, material, spectra, wavelengths, wo, ior_outside):
+def _transmissive_reflectance(needs, material, reflectance, spectra, wavelengths, wo, ior_outside):
     kind = material.kind
     if kind == DIELECTRIC:
-        return reflectance_dielectric(needs.dielectric, material, spectra, wavelengths, wo, ior_outside)
+        return reflectance_dielectric(
+            needs.dielectric, material, reflectance, spectra, wavelengths, wo, ior_outside
+        )
     if kind == THIN_DIELECTRIC:
         return reflectance_thin_dielectric(
-            needs.thin_dielectric, material, spectra, wavelengths, wo, ior_outside
+            needs.thin_dielectric, material, reflectance, spectra, wavelengths, wo, ior_outside
         )
     if kind == PASS_THROUGH:
-        return reflectance_pass_through(needs.pass_through, material, spectra, wavelengths, wo, ior_outside)
+        return reflectance_pass_through(
+            needs.pass_through, material, reflectance, spectra, wavelengths, wo, ior_outside
+        )
     return black(wavelengths)
 
 

@@ -139,7 +139,7 @@ def path_radiance(scene, limits, sensing, stream, wavelengths, origin, direction
         if length >= limits.max_length or material.kind == ABSORBER:
             break
         pair = FIRST_VERTEX + (length - 1) * PAIRS_PER_VERTEX
-        vertex = vertex_at(scene, surface, path)
+        vertex = vertex_at(scene, surface, path, wavelengths)
         u_select, u_lobe = choice_numbers(scene, stream, pair + CHOICE)
         if not is_delta_bsdf(material):
             direct = connect_to_emitter(scene, vertex, wavelengths, stream, pair + EMITTER, u_select)

@@ -17,11 +17,14 @@ TRIANGLES, SMOOTH_TRIANGLES, PARALLELOGRAMS, QUADRICS = range(4)
 # Quadric kinds, each in its canonical frame (see geometry/quadrics.py).
 SPHERE, DISK, CYLINDER, CONE = range(4)
 
-# BSDF kinds; ABSORBER is black from both sides and ends every path.
+# BSDF kinds; those up to CONDUCTOR have a reflectance. ABSORBER is black from both sides and ends every path.
 DIFFUSE, OREN_NAYAR, MIRROR, CONDUCTOR, DIELECTRIC, THIN_DIELECTRIC, PASS_THROUGH, ABSORBER = range(8)
 
 # Emitter kinds: how a point on the emitter is sampled.
 TRIANGLE_EMITTER, PARALLELOGRAM_EMITTER, SPHERE_EMITTER, QUADRIC_EMITTER = range(4)
+
+# Texture kinds.
+IMAGE, CHECKERBOARD = range(2)
 
 NO_EMITTER = -1
 
@@ -118,6 +121,24 @@ medium_dtype = np.dtype(
     align=True,
 )
 
+texture_dtype = np.dtype(
+    [
+        ("kind", "i4"),
+        ("spectra", "i4", 3),  # rows: of the image's channels, or of the checkerboard's two colours
+        ("channels", "i4"),  # image: 1 (grey) or 3 (RGB)
+        ("is_nearest", "i4"),  # image: 1: no interpolation
+        ("width", "i4"),  # image: texels
+        ("height", "i4"),
+        (
+            "offset",
+            "i8",
+        ),  # image: where its texels begin in the pool: row by row from the top, channels together
+        ("repeat_u", "f8"),  # images, or squares of the checkerboard, from 0 to 1 along u
+        ("repeat_v", "f8"),  # and along v
+    ],
+    align=True,
+)
+
 alias_dtype = np.dtype([("probability", "f8"), ("alias", "i8")], align=True)
 
 
@@ -147,6 +168,13 @@ class Emitters(NamedTuple):
 
     records: Table  # emitter_dtype
     alias: Table | None  # alias_dtype
+
+
+class Textures(NamedTuple):
+    """What materials vary over surfaces."""
+
+    records: Table  # texture_dtype
+    texels: Table | None  # uint16 (n,), see bsdf/reflectance.py; absent where no texture is an image
 
 
 class Needs(NamedTuple):
@@ -212,5 +240,5 @@ class Scene(NamedTuple):
     spectra: Spectra
     emitters: Emitters | None
     media: Table | None  # medium_dtype; absent where no dielectric touches another
-    textures: object | None
+    textures: Textures | None
     needs: Needs

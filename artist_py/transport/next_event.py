@@ -58,7 +58,7 @@ def _connect(emitters, scene, vertex, wavelengths, stream, pair, u_select):
     end = offset_position(point.position, point.normal, point.extent, -wi_world)
     if is_occluded(scene.geometry.embree, start, end - start, 1.0):
         return Connection(black(wavelengths), 1)
-    f = evaluate_bsdf(scene.needs, material, scene.spectra, wavelengths, vertex.wo, wi)
+    f = evaluate_bsdf(scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, vertex.wo, wi)
     pdf_light = point.pdf_solid_angle * emitter.pdf_select
     # The balance heuristic over the density: w / p = 1 / (p + p').
     weight = abs(wi.z) / (pdf_light + pdf_scatter)

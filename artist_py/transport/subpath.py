@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 from ..bsdf.dispatch import sample_bsdf
+from ..bsdf.reflectance import reflectance_at
 from ..core.frame import Frame, frame_around, to_local, to_world
 from ..core.rng import random_pair
 from ..core.vector import Spectrum, Vec3, dot, splat, vec3
@@ -49,6 +50,7 @@ class Vertex(NamedTuple):
     surface: Surface
     frame: Frame
     wo: Vec3
+    reflectance: Spectrum  # of the material here, zero where it has none
 
 
 @function
@@ -58,11 +60,13 @@ def start_path(origin, direction, sensing, media):
 
 
 @function
-def vertex_at(scene, surface, path):
+def vertex_at(scene, surface, path, wavelengths):
     """The path's vertex on `surface`, which its ray has hit."""
     frame = frame_around(surface.shading_normal)
-    wo = to_local(frame, -path.direction)
-    return Vertex(surface, frame, _on_geometric_side(scene.needs.smooth_triangles, surface, path, wo))
+    wo = _on_geometric_side(scene.needs.smooth_triangles, surface, path, to_local(frame, -path.direction))
+    material = scene.materials[surface.material]
+    reflectance = reflectance_at(scene.textures, material, scene.spectra, wavelengths, surface.u, surface.v)
+    return Vertex(surface, frame, wo, reflectance)
 
 
 @function
@@ -117,7 +121,18 @@ def scatter(scene, vertex, path, wavelengths, stream, pair, u_lobe):
     is_entering = vertex.wo.z > 0.0
     outside = ior_around(needs.media, scene, material, is_entering, path.media, wavelengths)
     sample = sample_bsdf(
-        needs, material, scene.spectra, wavelengths, vertex.wo, u, v, u_lobe, path.ratio, outside, None
+        needs,
+        material,
+        vertex.reflectance,
+        scene.spectra,
+        wavelengths,
+        vertex.wo,
+        u,
+        v,
+        u_lobe,
+        path.ratio,
+        outside,
+        None,
     )
     direction = to_world(vertex.frame, sample.wi)
     is_kept = sample.pdf > 0.0 and is_on_side(needs.smooth_triangles, surface, direction, sample.wi)

@@ -9,6 +9,7 @@ import pytest
 from chi_squared import ChiSquaredTest
 
 from artist_py.bsdf.dispatch import pdf_bsdf, sample_bsdf
+from artist_py.bsdf.reflectance import reflectance_at
 from artist_py.core.table import Table
 from artist_py.core.vector import Spectrum, Vec3, vec3
 from artist_py.jit import kernel
@@ -30,10 +31,12 @@ MATERIALS = {
 
 @kernel
 def sample_rows(needs, materials, spectra, wavelengths, wo, numbers, out):
+    reflectance = reflectance_at(None, materials[0], spectra, wavelengths, 0.0, 0.0)
     for i in range(len(numbers)):
         sample = sample_bsdf(
             needs,
             materials[0],
+            reflectance,
             spectra,
             wavelengths,
             wo,

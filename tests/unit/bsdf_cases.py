@@ -10,6 +10,7 @@ from artist_py.bsdf.dispatch import (
     pdf_bsdf,
     sample_bsdf,
 )
+from artist_py.bsdf.reflectance import reflectance_at
 from artist_py.core.table import Table
 from artist_py.core.vector import Spectrum, Vec3, lane, vec3
 from artist_py.jit import kernel
@@ -81,6 +82,11 @@ def direction(degrees, azimuth=0.7):
     return Vec3((sine * math.cos(azimuth), sine * math.sin(azimuth), math.cos(math.radians(degrees))))
 
 
+def reflectance_of(table, spectra=SPECTRA):
+    """Reflectance of the material, a Spectrum."""
+    return reflectance_at(None, table[0], spectra, WAVELENGTHS, 0.0, 0.0)
+
+
 def ones():
     """The ratio of theory (2.6) at the start of a path."""
     return Spectrum(np.ones(LANES))
@@ -89,12 +95,15 @@ def ones():
 def sample(table, wo, numbers, *, ratio=None, ior_outside=1.0, light_walk=None):
     """`sample_bsdf` as plain Python."""
     u, v, w = numbers
-    return sample_bsdf(ALL, table[0], SPECTRA, WAVELENGTHS, wo, u, v, w, ratio, ior_outside, light_walk)
+    reflectance = reflectance_of(table)
+    return sample_bsdf(
+        ALL, table[0], reflectance, SPECTRA, WAVELENGTHS, wo, u, v, w, ratio, ior_outside, light_walk
+    )
 
 
 def evaluate(table, wo, wi):
     """f as plain Python, (C,)."""
-    return evaluate_bsdf(ALL, table[0], SPECTRA, WAVELENGTHS, wo, wi).values
+    return evaluate_bsdf(ALL, table[0], reflectance_of(table), SPECTRA, WAVELENGTHS, wo, wi).values
 
 
 def random_directions(rng, count):
@@ -104,9 +113,10 @@ def random_directions(rng, count):
 
 @kernel
 def evaluate_rows(needs, materials, spectra, wavelengths, wo, directions, f, pdf):
+    reflectance = reflectance_at(None, materials[0], spectra, wavelengths, 0.0, 0.0)
     for i in range(len(directions)):
         wi = vec3(directions[i, 0], directions[i, 1], directions[i, 2])
-        value = evaluate_bsdf(needs, materials[0], spectra, wavelengths, wo, wi)
+        value = evaluate_bsdf(needs, materials[0], reflectance, spectra, wavelengths, wo, wi)
         for j in range(LANES):
             f[i, j] = lane(value, j)
         pdf[i] = pdf_bsdf(needs, materials[0], wo, wi)
@@ -134,10 +144,22 @@ sample_dtype = np.dtype(
 
 @kernel
 def sample_rows(needs, materials, spectra, wavelengths, wo, numbers, ratio, ior_outside, light_walk, out):
+    reflectance = reflectance_at(None, materials[0], spectra, wavelengths, 0.0, 0.0)
     for i in range(len(numbers)):
         u, v, w = numbers[i, 0], numbers[i, 1], numbers[i, 2]
         s = sample_bsdf(
-            needs, materials[0], spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+            needs,
+            materials[0],
+            reflectance,
+            spectra,
+            wavelengths,
+            wo,
+            u,
+            v,
+            w,
+            ratio,
+            ior_outside,
+            light_walk,
         )
         row = out[i]
         row.wi[0], row.wi[1], row.wi[2] = s.wi.x, s.wi.y, s.wi.z

@@ -20,6 +20,7 @@ from bsdf_cases import (
     evaluated,
     materials,
     random_directions,
+    reflectance_of,
     sample,
     sampled,
 )
@@ -57,7 +58,9 @@ class TestDiffuseKinds:
     @pytest.mark.parametrize("degrees", [0.0, 60.0, 88.0, 120.0])
     def test_reflectance_is_the_integral(self, kind, roughness, degrees):
         table, wo = materials(kind, roughness=roughness), direction(degrees)
-        expected = reflectance_bsdf(ALL, table[0], SPECTRA, WAVELENGTHS, wo, 1.0).values
+        expected = reflectance_bsdf(
+            ALL, table[0], reflectance_of(table), SPECTRA, WAVELENGTHS, wo, 1.0
+        ).values
         assert np.all(expected <= RESOLVED[COLOUR] + 1e-6)
         np.testing.assert_allclose(albedo(table, wo), expected, atol=ALBEDO_TOLERANCE)
 
@@ -124,7 +127,9 @@ class TestOrenNayar:
         table = materials(OREN_NAYAR, roughness=sigma)
         dark = Spectra(RESOLVED * np.float32(1e-4), None, 0.0)
         back, across = (
-            evaluate_bsdf(ALL, table[0], dark, WAVELENGTHS, direction(60.0), wi).values[0]
+            evaluate_bsdf(
+                ALL, table[0], reflectance_of(table, dark), dark, WAVELENGTHS, direction(60.0), wi
+            ).values[0]
             for wi in (direction(60.0), direction(0.0))
         )
         assert back / across == pytest.approx(expected, rel=1e-3)
@@ -144,7 +149,13 @@ class TestOrenNayar:
         dark = Spectra(RESOLVED * np.float32(1e-4), None, 0.0)
         once = [
             reflectance_bsdf(
-                ALL, table[0], dark, WAVELENGTHS, direction(math.degrees(math.acos(cosine))), 1.0
+                ALL,
+                table[0],
+                reflectance_of(table, dark),
+                dark,
+                WAVELENGTHS,
+                direction(math.degrees(math.acos(cosine))),
+                1.0,
             ).values[0]
             for cosine in cosines
         ]
@@ -171,7 +182,9 @@ class TestSides:
         assert sample(table, behind, (0.3, 0.4, 0.5)).pdf == 0.0
         assert not evaluate(table, behind, direction(150.0)).any()
         assert pdf_bsdf(ALL, table[0], behind, direction(150.0)) == 0.0
-        assert not reflectance_bsdf(ALL, table[0], SPECTRA, WAVELENGTHS, behind, 1.0).values.any()
+        assert not reflectance_bsdf(
+            ALL, table[0], reflectance_of(table), SPECTRA, WAVELENGTHS, behind, 1.0
+        ).values.any()
         assert sample(table, direction(60.0), (0.3, 0.4, 0.5)).pdf > 0.0
 
     def test_scenes_without_one_sided_materials_do_not_look(self):
@@ -216,16 +229,23 @@ class TestCompiled:
     @pytest.mark.parametrize("kind", [*range(7), ABSORBER])
     def test_kinds_that_the_scene_does_not_need_are_black(self, kind):
         table, wo = materials(kind), direction(30.0)
-        result = sample_bsdf(Needs(), table[0], SPECTRA, WAVELENGTHS, wo, 0.5, 0.5, 0.5, None, 1.0, None)
+        reflectance = Spectrum(RESOLVED[COLOUR])
+        result = sample_bsdf(
+            Needs(), table[0], reflectance, SPECTRA, WAVELENGTHS, wo, 0.5, 0.5, 0.5, None, 1.0, None
+        )
         assert result.pdf == 0.0
         assert not result.weight.values.any()
-        assert not evaluate_bsdf(Needs(), table[0], SPECTRA, WAVELENGTHS, wo, wo).values.any()
+        assert not evaluate_bsdf(Needs(), table[0], reflectance, SPECTRA, WAVELENGTHS, wo, wo).values.any()
         assert pdf_bsdf(Needs(), table[0], wo, wo) == 0.0
-        assert not reflectance_bsdf(Needs(), table[0], SPECTRA, WAVELENGTHS, wo, 1.0).values.any()
+        assert not reflectance_bsdf(
+            Needs(), table[0], reflectance, SPECTRA, WAVELENGTHS, wo, 1.0
+        ).values.any()
 
     def test_absorbers_absorb(self):
         table, wo = materials(ABSORBER), direction(30.0)
         assert not sampled(table, wo, np.full((1, 3), 0.5)).pdf.any()
         assert not evaluate(table, wo, wo).any()
-        assert not reflectance_bsdf(ALL, table[0], SPECTRA, WAVELENGTHS, wo, 1.0).values.any()
+        assert not reflectance_bsdf(
+            ALL, table[0], reflectance_of(table), SPECTRA, WAVELENGTHS, wo, 1.0
+        ).values.any()
         assert is_delta_bsdf(table[0])

@@ -20,6 +20,7 @@ from bsdf_cases import (
     direction,
     evaluate,
     materials,
+    reflectance_of,
     sample,
     sampled,
     strata,
@@ -63,7 +64,9 @@ class TestDeltaKinds:
         """The mean of the weights is the reflectance: nothing is lost or won in the choice of a lobe."""
         table, wo = materials(kind), direction(degrees)
         samples = sampled(table, wo, strata(), light_walk=True)
-        expected = reflectance_bsdf(ALL, table[0], SPECTRA, WAVELENGTHS, wo, 1.0).values
+        expected = reflectance_bsdf(
+            ALL, table[0], reflectance_of(table), SPECTRA, WAVELENGTHS, wo, 1.0
+        ).values
         np.testing.assert_allclose(samples.weight.astype(float).mean(0), expected, atol=10.0 / STRATA)
         assert samples.is_delta.all()
         np.testing.assert_array_equal(samples.pdf, samples.pdf_rev)

@@ -162,6 +162,7 @@ def memory_estimate(compiled, settings):
         "geometry": sum(array.nbytes for array in arrays) + (emitters.records.nbytes if emitters else 0),
         "acceleration structure": 110 * faces,
         "spectra": compiled.spectra.nbytes,
+        "textures": sum(image.nbytes for image in compiled.images),
     }
 
 

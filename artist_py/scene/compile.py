@@ -16,6 +16,7 @@ from artist_py.scene.compile_camera import camera_matrices, compile_camera, comp
 from artist_py.scene.compile_emitters import EmitterCompiler
 from artist_py.scene.compile_geometry import GeometryCompiler, collect_parts, space_of
 from artist_py.scene.compile_materials import NEED_NAMES, MaterialCompiler, SpectrumRows
+from artist_py.scene.compile_textures import check_coordinates
 from artist_py.transport.initial_media import media_at
 
 VISIBLE = 380, 780  # nm
@@ -44,6 +45,7 @@ class CompiledScene:
     matrices: tuple
     embree: Any  # keeps the BVH alive
     warnings: list
+    images: list  # `ImageSummary` of each that textures use
     reasons: dict = field(default_factory=dict)
     seconds: float = 0.0
 
@@ -86,7 +88,7 @@ def compile_scene(graph, threads=None):
         tables.Spectra(None, Table(dense), float(first)),
         emitter_table,
         Table(media) if media is not None else None,
-        None,
+        materials.textures.table(),
         needs,
     )
     camera = compile_camera(graph.camera, graph.film, space)
@@ -104,7 +106,8 @@ def compile_scene(graph, threads=None):
         space,
         camera_matrices(graph.camera, graph.film),
         embree,
-        geometry.warnings,
+        geometry.warnings + materials.textures.warnings,
+        materials.textures.images,
         seconds=time.perf_counter() - begun,
     )
 
@@ -122,14 +125,18 @@ def _lights_and_materials(graph, geometry, spectra):
     """Both compiled, their problems reported together."""
     problems, result = [], []
     used = {placed.material for placed in geometry.placed}
-    for build in (lambda: EmitterCompiler(geometry, spectra), lambda: MaterialCompiler(graph, used, spectra)):
+    for build in (
+        lambda: EmitterCompiler(geometry, spectra),
+        lambda: MaterialCompiler(graph, used, spectra),
+        lambda: check_coordinates(graph, geometry.placed),
+    ):
         try:
             result.append(build())
         except SceneError as error:
             problems.extend(error.problems)
     if problems:
         raise SceneError(problems)
-    return result
+    return result[:2]
 
 
 def _dielectrics_touch(geometry, placements, materials):
@@ -160,6 +167,7 @@ def _needs(graph, geometry, materials, emitters, media):
         "quadrics": tables.QUADRICS in kinds,
         "instances": bool(graph.instances),
         "one_sided": bool((materials.table["two_sided"][1:] == 0).any()),
+        "textures": bool((materials.table["texture"] >= 0).any()),
         "shared_wavelengths": graph.render.wavelengths == "shared",
     }
     present |= {name for name, condition in conditions.items() if condition}

@@ -7,8 +7,9 @@ import numpy as np
 from artist_py.errors import SceneError
 from artist_py.scene import graph as scene_graph
 from artist_py.scene import tables
+from artist_py.scene.compile_textures import TextureCompiler, is_textured, reflectance_row
 from artist_py.scene.optics import ior_table, is_dispersive, metal_table
-from artist_py.scene.spectra import check_reflectance, tabulate
+from artist_py.scene.spectra import tabulate
 from artist_py.scene.where import problem
 
 MAX_MEDIA = 127  # slots of transport/media.py have eight bits
@@ -64,7 +65,7 @@ class MaterialCompiler:
     """Fills material and medium rows; `rows` maps names (None: the black absorber) to row numbers."""
 
     def __init__(self, graph, used, spectra):
-        self.spectra, self.problems = spectra, []
+        self.spectra, self.textures, self.problems = spectra, TextureCompiler(spectra), []
         names = [name for name in graph.materials if name in used]
         self.rows = {None: 0, **{name: i + 1 for i, name in enumerate(names)}}
         self.table = np.zeros(len(names) + 1, tables.material_dtype)
@@ -79,8 +80,12 @@ class MaterialCompiler:
         row["kind"] = KINDS[type(material)]
         row["two_sided"] = getattr(material, "two_sided", True)
         try:
-            if hasattr(material, "reflectance"):
-                row["reflectance"] = self._reflectance(material)
+            if is_textured(material):
+                row["texture"] = self.textures.row(material.reflectance)
+            elif hasattr(material, "reflectance"):
+                row["reflectance"] = reflectance_row(
+                    self.spectra, material.reflectance, material, "reflectance"
+                )
             if isinstance(material, scene_graph.OrenNayar):
                 row["roughness"] = math.radians(material.roughness)
             if isinstance(material, scene_graph.Conductor):
@@ -89,13 +94,6 @@ class MaterialCompiler:
                 self._fill_ior(row, material)
         except SceneError as error:
             self.problems.extend(error.problems)
-
-    def _reflectance(self, material):
-        table = tabulate(material.reflectance, self.spectra.first, self.spectra.last, "reflectance")
-        message = check_reflectance(table, self.spectra.first)
-        if message:
-            raise SceneError([problem(material, "reflectance", message)])
-        return self.spectra.row(np.clip(table, 0.0, 1.0))
 
     def _metal(self, material):
         span = self.spectra.first, self.spectra.last

@@ -30,7 +30,7 @@ FEATURES = {
     "sphere_emitters": ("sampling of spheres by solid angle", "no sphere emits"),
     "quadric_emitters": ("sampling of other exact shapes", "no disk, cylinder or cone emits"),
     "one_sided": ("materials that are black from behind", "every material is two-sided"),
-    "textures": ("textures", "no material has a texture"),
+    "textures": ("reflectances that vary over surfaces", "no material has a texture"),
     "shared_wavelengths": ("one set of wavelengths per iteration", "every path has its own wavelengths"),
 }
 
@@ -41,6 +41,7 @@ def describe(compiled, memory):
         "Geometry": _geometry(compiled),
         "Lights": _lights(compiled),
         "Materials": _materials(compiled),
+        **({"Textures": _textures(compiled)} if compiled.scene.textures else {}),
         "Needed": _features(compiled, needed=True),
         "Left out": _features(compiled, needed=False),
         "Memory": _memory(memory),
@@ -83,6 +84,20 @@ def _materials(compiled):
     unused = len(compiled.graph.materials) - len(used)
     rows = [(name, str(count)) for name, count in counts]
     return rows + ([("defined but not used", str(unused))] if unused else [])
+
+
+def _textures(compiled):
+    colours = {1: "grey", 3: "RGB"}
+    rows = [
+        (image.path, f"{image.width} x {image.height}, {colours[image.channels]}, {_size(image.nbytes)}")
+        for image in compiled.images
+    ]
+    boards = int(np.sum(compiled.scene.textures.records.array["kind"] == tables.CHECKERBOARD))
+    return rows + ([("checkerboards", str(boards))] if boards else [])
+
+
+def _size(size):
+    return f"{size / 2**20:.1f} MiB" if size >= 2**20 else f"{size / 2**10:.1f} KiB"
 
 
 def _features(compiled, needed):

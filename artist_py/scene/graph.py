@@ -3,7 +3,7 @@
 Lengths are in scene units, angles in degrees, wavelengths in nm, radiance in W m^-2 sr^-1 nm^-1. A key
 without a default must be given. The converters (`fields.py`) say what a value may be, `problems` what keys
 may not say together. Shapes are in `shape_types.py`, spectra in `spectrum_types.py`, transforms in
-`transforms.py`.
+`transforms.py`, textures in `texture_types.py`.
 """
 
 import math
@@ -28,6 +28,8 @@ from artist_py.scene.messages import expected
 from artist_py.scene.shape_types import SHAPES, Shape, Vector, distance, shape, transform
 from artist_py.scene.spectrum_fields import IndexField, MetalField, SpectrumField
 from artist_py.scene.spectrum_types import Constant, RefractiveIndex, Spectrum
+from artist_py.scene.texture_types import Texture
+from artist_py.scene.texture_types import reflectance as _reflectance
 from artist_py.scene.transforms import are_parallel, direction, normalized, point
 
 FILTER_RADIUS = {"box": 0.5, "tent": 1.0, "gaussian": 1.5, "blackman-harris": 1.5, "mitchell": 2.0}  # pixels
@@ -35,7 +37,6 @@ INTEGRATORS = ("pt",)
 WHITE_LUMINANCE = 72983.25  # cd/m2 of a flat spectrum of radiance 1: 683.002 lm/W times the integral of ybar
 
 _count = Number(at_least=1, whole=True)
-_unit_range = SpectrumField(Number(at_least=0, at_most=1))
 _radiance = SpectrumField(Number(at_least=0))
 _positive_spectrum = SpectrumField(Number(above=0))
 
@@ -161,14 +162,14 @@ class Material(Node):
 class Diffuse(Material):
     """type = "diffuse": Lambert."""
 
-    reflectance: Spectrum = key(_unit_range, Constant(0.5))
+    reflectance: Spectrum | Texture = key(_reflectance, Constant(0.5))
 
 
 @node
 class OrenNayar(Material):
     """type = "oren-nayar": rough matte."""
 
-    reflectance: Spectrum = key(_unit_range, Constant(0.5))
+    reflectance: Spectrum | Texture = key(_reflectance, Constant(0.5))
     roughness: float = key(Number(at_least=0, at_most=90), 20.0)  # degrees, sigma of the facets' slopes
 
 
@@ -176,7 +177,7 @@ class OrenNayar(Material):
 class Mirror(Material):
     """type = "mirror": reflects the same share at every angle."""
 
-    reflectance: Spectrum = key(_unit_range, Constant(1.0))
+    reflectance: Spectrum | Texture = key(_reflectance, Constant(1.0))
 
 
 @node
@@ -186,7 +187,7 @@ class Conductor(Material):
     metal: str | None = key(MetalField(), None)
     eta: Spectrum | None = key(_positive_spectrum, None)
     k: Spectrum | None = key(_radiance, None)
-    reflectance: Spectrum = key(_unit_range, Constant(1.0))  # multiplies
+    reflectance: Spectrum | Texture = key(_reflectance, Constant(1.0))  # multiplies
 
     def problems(self):
         if self.metal is None and self.eta is None and self.k is None:

@@ -28,7 +28,8 @@ def render(scene, *, observer=None, stop=None, **settings):
     """Render a scene from `load_scene`; a `RenderResult` with `film`, `statistics` and `interrupted`.
 
     `settings` are the fields of `RenderSettings`: iterations, time_seconds, error (estimated relMSE), threads,
-    spectral, aovs, ...; without a limit those of the scene file hold. `stop` is a threading.Event that ends the render early.
+    spectral, aovs, ...; without a limit those of the scene file hold. `stop` is a threading.Event that ends the
+    render early.
     """
     import os
 

@@ -1,8 +1,8 @@
 """How kernels are compiled and where they are cached; the only importer of numba's decorators.
 
 `kernel` is called from Python, once per pass. `function` is called from kernels; called from Python it is an
-ordinary function, so that unit tests and debuggers see plain Python. An optional part of a scene travels as an *argument* that is
-`None` when absent: numba prunes `if part is None` per type, so that an absent part is not compiled at all.
+ordinary function, so that unit tests and debuggers see plain Python. An optional part of a scene travels as an
+*argument* that is `None` when absent: numba prunes `if part is None` per type, and an absent part is not compiled.
 """
 
 import hashlib
@@ -82,7 +82,8 @@ from numba.extending import register_jitable  # noqa: E402
 
 numba.config.CACHE_DIR = str(CACHE)
 
-# No nnan and no ninf: isfinite must keep its meaning.
+# No nnan and no ninf: NaN and infinity must keep their meaning in comparisons. (isfinite of a sum does not: it is
+# x - x == 0, which reassociation makes true. Write abs(x) < inf.)
 FASTMATH = {"nsz", "arcp", "contract", "afn", "reassoc"}
 
 # Without numba's run time (_nrt) nothing in a kernel can allocate or count references: it would not compile.

@@ -17,7 +17,8 @@ def command(scene, settings, as_json):
 
     Prints what is in SCENE, what that needs and why, what is left out, and the settings that count.
     """
-    from artist_py.samplers.render_job import RenderSettings, memory_estimate
+    from artist_py.samplers.memory import memory_estimate
+    from artist_py.samplers.render_job import RenderSettings
     from artist_py.scene.compile import compile_scene
     from artist_py.scene.describe import describe
     from artist_py.scene.reader import read_scene

@@ -48,6 +48,18 @@ def square_to_cosine_hemisphere(u, v):
 
 
 @function
+def square_to_power_cosine(u, v, n):
+    """Local direction with density (n + 1) / (2 pi) cos^n per solid angle, n >= 0.
+
+    The logarithm of the cosine keeps narrow lobes exact where the cosine itself would round to 1.
+    """
+    log_cos = math.log1p(-u) / (n + 1.0)
+    sin_theta = math.sqrt(-math.expm1(2.0 * log_cos))
+    angle = 2.0 * math.pi * v
+    return vec3(sin_theta * math.cos(angle), sin_theta * math.sin(angle), math.exp(log_cos))
+
+
+@function
 def square_to_sphere(u, v):
     """Unit direction, uniform: density 1 / (4 pi) per solid angle."""
     z = 1.0 - 2.0 * u

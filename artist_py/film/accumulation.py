@@ -24,7 +24,8 @@ def add_rows(image, sums, odd_sums, squares, bands, band_sums, is_odd, first, en
     count = 0
     for row in range(first, end):
         for column in range(image.shape[1]):
-            if math.isfinite(image[row, column, 0] + image[row, column, 1] + image[row, column, 2]):
+            # A comparison, and not isfinite of the sum: that is x - x == 0, which reassociation makes true of NaN.
+            if abs(image[row, column, 0] + image[row, column, 1] + image[row, column, 2]) < math.inf:
                 _add_pixel(image, sums, odd_sums, is_odd, row, column)
                 _add_squares(squares, image, row, column)
                 _add_bands(band_sums, bands, row, column)

@@ -162,7 +162,7 @@ class EmbreeScene:
         self._attach(geometry, geometry_id, name, blocks_light)
 
     def add_quadrics(self, geometry_id, quadrics, callbacks, name, blocks_light=True):
-        """Exact shapes (quadric_dtype) as user geometry; `callbacks` are the addresses of bounds, intersect, occluded."""
+        """Exact shapes (quadric_dtype) as user geometry; `callbacks` are addresses: bounds, intersect, occluded."""
         bounds, intersect, occluded = callbacks
         geometry = rtc.rtcNewGeometry(self.device.handle, GEOMETRY_USER)
         rtc.rtcSetGeometryUserPrimitiveCount(geometry, len(quadrics))

@@ -145,7 +145,7 @@ def path_radiance(scene, limits, sensing, stream, wavelengths, origin, direction
             direct = connect_to_emitter(scene, vertex, wavelengths, stream, pair + EMITTER, u_select)
             radiance = radiance + path.throughput * direct.radiance
             shadow_rays += direct.rays
-        path = scatter(scene, vertex, path, wavelengths, stream, pair + BSDF, u_lobe)
+        path = scatter(scene, vertex, path, wavelengths, stream, pair + BSDF, u_lobe, None).path
         length += 1
         if path.is_absorbed or is_ended_by_roulette(limits, stream, length, path):
             break

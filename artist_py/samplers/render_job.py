@@ -2,19 +2,17 @@
 
 import resource
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
-import numpy as np
-
-from ..core.table import Table
-from ..errors import OptionError
 from ..film.accumulation import Film
 from ..film.image import FilmImage
+from ..integrators.methods import METHODS
 from .aovs import render_aovs
+from .backwards import BackwardsSampler
+from .memory import band_edges, crop_of, light_paths_within, memory_estimate
 from .stochastic import StochasticSampler
 
 PROGRESS_SECONDS = 0.25
-BAND_NM = 10
 
 
 @dataclass(frozen=True)
@@ -58,28 +56,34 @@ class _Run:
     begun: float = 0.0
     last_save: float = 0.0
     last_progress: float = -1.0
-    phases: dict = field(default_factory=dict)
 
 
 def render(compiled, settings, observer=None, stop=None):
     """Render until a limit is reached or `stop` (a threading.Event) is set; returns a `RenderResult`."""
     run = _Run(compiled, settings, observer or Silence(), stop)
-    check_memory(compiled, settings)
-    film = _film_of(compiled, settings)
     for text in compiled.warnings:
         run.observer.warning(text)
-    with StochasticSampler(compiled, film, settings.threads) as sampler:
-        seconds = sampler.compile_kernels(run.observer)
+    film = _film_of(compiled, settings)
+    with sampler_for(compiled, film, settings, run.observer) as sampler:
+        compile_seconds = sampler.compile_kernels(run.observer)
         run.observer.started(_plan(compiled, settings))
         run.begun = run.last_save = time.monotonic()
         cpu_begun = time.process_time()
         interrupted = _iterate(run, sampler, film)
-        run.phases = {"path_tracing": time.monotonic() - run.begun}
+        seconds = time.monotonic() - run.begun
         cpu = time.process_time() - cpu_begun
         aovs = render_aovs(compiled, sampler, settings, run.observer) if settings.aovs else {}
     image = film_image(compiled, settings, film, aovs)
-    statistics = _statistics(run, sampler, film, seconds, cpu)
+    statistics = _statistics(run, sampler, film, compile_seconds, seconds, cpu)
     return RenderResult(image, statistics, interrupted)
+
+
+def sampler_for(compiled, film, settings, observer):
+    """The image sampler that drives the scene's integrator, within the memory that `settings` allows."""
+    light_paths = light_paths_within(compiled, settings, observer.warning)
+    if compiled.graph.render.integrator in METHODS:
+        return BackwardsSampler(compiled, film, settings.threads, light_paths)
+    return StochasticSampler(compiled, film, settings.threads)
 
 
 def _iterate(run, sampler, film):
@@ -129,53 +133,10 @@ def _report(run, film, error):
     return error
 
 
-def crop_of(graph):
-    """Pixels to render, (x0, x1, y0, y1), half open."""
-    width, height = graph.film.resolution
-    return graph.film.crop or (0, width, 0, height)
-
-
-def band_edges(compiled):
-    """Edges of the spectral bands, nm."""
-    first, last = compiled.wavelength_range
-    return np.arange(first, last + BAND_NM - 1, BAND_NM, dtype=float)
-
-
 def _film_of(compiled, settings):
     x0, x1, y0, y1 = crop_of(compiled.graph)
     bands = len(band_edges(compiled)) - 1 if settings.spectral else 0
     return Film(y1 - y0, x1 - x0, "variance" in settings.aovs, bands)
-
-
-def memory_estimate(compiled, settings):
-    """Bytes that a render needs beyond the interpreter: `{what: bytes}`."""
-    x0, x1, y0, y1 = crop_of(compiled.graph)
-    pixels = (x1 - x0) * (y1 - y0)
-    bands = len(band_edges(compiled)) - 1 if settings.spectral else 0
-    geometry = compiled.scene.geometry
-    arrays = [array for array in geometry if isinstance(array, Table)]
-    emitters = compiled.scene.emitters
-    faces = len(geometry.triangles) + len(geometry.parallelograms)
-    return {
-        "film": pixels * (12 + 24 + 12 + (24 if "variance" in settings.aovs else 0) + 12 * bands),
-        "auxiliary outputs": pixels * 60 if set(settings.aovs) - {"variance"} else 0,
-        "geometry": sum(array.nbytes for array in arrays) + (emitters.records.nbytes if emitters else 0),
-        "acceleration structure": 110 * faces,
-        "spectra": compiled.spectra.nbytes,
-        "textures": sum(image.nbytes for image in compiled.images),
-    }
-
-
-def check_memory(compiled, settings):
-    """Raise an `OptionError` if the render cannot stay within `max_memory_bytes`."""
-    if settings.max_memory_bytes is None:
-        return
-    needed = sum(memory_estimate(compiled, settings).values())
-    if needed > settings.max_memory_bytes:
-        raise OptionError(
-            f"--max-memory: this render needs about {needed / 2**20:.0f} MiB, and "
-            f"{settings.max_memory_bytes / 2**20:.0f} MiB are allowed; render it in parts with --crop"
-        )
 
 
 def _plan(compiled, settings):
@@ -209,16 +170,16 @@ def film_image(compiled, settings, film, aovs):
     )
 
 
-def _statistics(run, sampler, film, compile_seconds, cpu):
+def _statistics(run, sampler, film, compile_seconds, seconds, cpu):
     rays, shadow_rays = sampler.rays
-    seconds = run.phases["path_tracing"]
     paths = film.iterations * film.height * film.width
     return {
         "scene_seconds": run.compiled.seconds,
         "compile_seconds": compile_seconds,
         "cache_hits": sampler.cache_hits,
         "cache_misses": sampler.cache_misses,
-        "phase_seconds": run.phases,
+        "phase_seconds": sampler.phases,
+        **sampler.counts,
         "cpu_seconds": cpu,
         "threads": run.settings.threads,
         "paths": paths,

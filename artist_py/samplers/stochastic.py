@@ -14,7 +14,7 @@ from ..transport.roulette import Limits
 from ..transport.sensing import Bands, Sensing
 from .wavelengths import resolve_spectra, shared_wavelengths
 
-STRATIFIED_PAIRS = 12  # the film, the lens, the wavelengths and three vertices; see benchmarks/
+STRATIFIED_PAIRS = 9  # the film, the lens, the wavelengths and two vertices; see benchmarks/README.md
 STOP_POLL_SECONDS = 0.05
 ANNOUNCE_SECONDS = 1.0
 COMPILE_SECONDS_HINT = 15
@@ -33,7 +33,8 @@ class StochasticSampler:
         self.stratified_pairs = STRATIFIED_PAIRS if render.sampler == "sobol" else 0
         self.image = np.zeros((film.height, film.width, 3), np.float32)
         self.bands = self._bands()
-        self.rays = (0, 0)
+        self.rays = (0, 0)  # closest hits, occlusion
+        self.phases, self.counts = {"paths": 0.0, "film": 0.0}, {}
         self.cache_hits = self.cache_misses = 0
         self.pool = ThreadPoolExecutor(threads)
 
@@ -54,9 +55,11 @@ class StochasticSampler:
 
     def iterate(self, iteration, stop=None):
         """Trace one path per pixel and add them to the film; `False` if `stop` was set before all were traced."""
+        begun = time.monotonic()
         progress = np.zeros(4, np.int64)
         arguments = self._arguments(iteration, progress)
         self.run([(trace_paths, arguments)] * self.threads, stop, progress)
+        self.phases["paths"] += time.monotonic() - begun
         if progress[STOP]:
             return False
         self.add_to_film(iteration)
@@ -87,9 +90,10 @@ class StochasticSampler:
 
     def add_to_film(self, iteration):
         """Add the image of the iteration to the film, in row order whatever the threads."""
+        begun = time.monotonic()
         film, height = self.film, self.film.height
         edges = np.linspace(0, height, self.threads + 1).astype(int)
-        places = [np.zeros((REJECTED_KEPT, 2), np.int64) for _ in range(self.threads)]
+        places = [self._places() for _ in range(self.threads)]
         jobs = [
             (add_rows, self._rows(iteration, edges[i], edges[i + 1], places[i])) for i in range(self.threads)
         ]
@@ -97,6 +101,12 @@ class StochasticSampler:
             if count:
                 film.reject(count, where, (self.crop[0], self.crop[2]), iteration)
         film.iterations += 1
+        self.phases["film"] += time.monotonic() - begun
+
+    @staticmethod
+    def _places():
+        """Room for the places (row, column) of rejected contributions."""
+        return np.zeros((REJECTED_KEPT, 2), np.int64)
 
     def _rows(self, iteration, first, end, places):
         film = self.film
@@ -122,7 +132,7 @@ class StochasticSampler:
         """Compile the kernels, or load them from the cache; returns seconds. Says so if it takes a while."""
         calls = [
             (trace_paths, self._arguments(0, np.zeros(4, np.int64))),
-            (add_rows, self._rows(0, 0, 0, np.zeros((REJECTED_KEPT, 2), np.int64))),
+            (add_rows, self._rows(0, 0, 0, self._places())),
         ]
         return self.compile_calls(calls, observer)
 

@@ -6,9 +6,10 @@ import numpy as np
 
 from artist_py.core.table import Table
 from artist_py.core.vector import Vec3
-from artist_py.film.filters import filter_table
+from artist_py.film.filters import evaluate_filter, filter_table
 from artist_py.scene import tables
 from artist_py.scene.graph import ThinLens
+from artist_py.transport.splats import PROFILE_STEPS
 
 FAR = 16.0  # radii: cameras farther from the centre start their rays on the bounding sphere
 
@@ -53,7 +54,11 @@ def compile_camera(camera, film, space):
 def compile_filter(film):
     """`tables.Filter`; without weights where the filter has no negative lobes."""
     table = filter_table(film.filter, film.filter_radius)
-    return tables.Filter(Table(table.offset), None if np.all(table.weight == 1.0) else Table(table.weight))
+    weights = None if np.all(table.weight == 1.0) else Table(table.weight)
+    half = round(film.filter_radius * PROFILE_STEPS)
+    offsets = np.arange(-half, half + 1) / PROFILE_STEPS
+    profile = evaluate_filter(film.filter, film.filter_radius, offsets)
+    return tables.Filter(Table(table.offset), weights, Table(profile / np.trapezoid(profile, offsets)))
 
 
 def camera_matrices(camera, film):

@@ -116,8 +116,9 @@ def _features(compiled, needed):
 
 def _memory(memory):
     rows = [(name, f"{size / 2**20:.1f} MiB") for name, size in memory.items() if size]
-    return rows + [
-        ("in all", f"{sum(memory.values()) / 2**20:.1f} MiB, and about 200 MiB for Python and kernels")
+    return [
+        *rows,
+        ("in all", f"{sum(memory.values()) / 2**20:.1f} MiB, and about 200 MiB for Python and kernels"),
     ]
 
 

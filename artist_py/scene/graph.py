@@ -24,7 +24,7 @@ from artist_py.scene.fields import (
     node,
     numbers,
 )
-from artist_py.scene.messages import expected
+from artist_py.scene.messages import expected, show
 from artist_py.scene.shape_types import SHAPES, Shape, Vector, distance, shape, transform
 from artist_py.scene.spectrum_fields import IndexField, MetalField, SpectrumField
 from artist_py.scene.spectrum_types import Constant, RefractiveIndex, Spectrum
@@ -33,8 +33,11 @@ from artist_py.scene.texture_types import reflectance as _reflectance
 from artist_py.scene.transforms import are_parallel, direction, normalized, point
 
 FILTER_RADIUS = {"box": 0.5, "tent": 1.0, "gaussian": 1.5, "blackman-harris": 1.5, "mitchell": 2.0}  # pixels
-INTEGRATORS = ("pt",)
-WHITE_LUMINANCE = 72983.25  # cd/m2 of a flat spectrum of radiance 1: 683.002 lm/W times the integral of ybar
+INTEGRATORS = ("pt", "lt", "bpt", "ppm", "bpm", "vcm")
+MERGES = ("ppm", "bpm", "vcm")  # those that need all paths of an iteration to share their wavelengths
+LONGEST_STORED = 1000  # edges of subpaths whose vertices are stored
+# cd/m2 of a flat spectrum of radiance 1: 683.002 lm/W times the integral of ybar.
+WHITE_LUMINANCE = {"CIE 1931 2": 72983.4866019817, "CIE 1964 10": 79680.2951650147}
 
 _count = Number(at_least=1, whole=True)
 _radiance = SpectrumField(Number(at_least=0))
@@ -53,12 +56,14 @@ class Film(Node):
     )  # pixels; x1 and y1 are the first ones left out; default: the whole image
     filter: str = key(Choice(tuple(FILTER_RADIUS)), "blackman-harris")
     filter_radius: float = key(Number(above=0, at_most=32), None)  # pixels; default: as FILTER_RADIUS
-    white_luminance: float = key(Number(above=0), WHITE_LUMINANCE)  # cd/m2 that become Y = 1
-    observer: str = key(Choice(("CIE 1931 2", "CIE 1964 10")), "CIE 1931 2")
+    white_luminance: float = key(Number(above=0), None)  # cd/m2 with Y = 1; default: as WHITE_LUMINANCE
+    observer: str = key(Choice(tuple(WHITE_LUMINANCE)), "CIE 1931 2")
 
     def __post_init__(self):
         if self.filter_radius is None:
             object.__setattr__(self, "filter_radius", FILTER_RADIUS[self.filter])
+        if self.white_luminance is None:
+            object.__setattr__(self, "white_luminance", WHITE_LUMINANCE[self.observer])
 
     def problems(self):
         if self.crop is not None:
@@ -114,9 +119,16 @@ class Merging(Node):
     """[render.merging]: photons."""
 
     radius: float | None = key(Number(above=0), None)  # in bounding radii of the scene; default: 0.003
-    radius_pixels: float | None = key(Number(above=0), None)  # instead: pixels at the vertex
+    radius_pixels: float | None = key(Number(above=0), None)  # instead: pixels, at the distance of look_at
     alpha: float = key(Number(above=0, at_most=1), 0.75)  # how the radius shrinks; 1: it does not
-    light_paths: float = key(Number(above=0), 1.0)  # per pixel
+    schedule: str = key(
+        Choice(("knaus-zwicker", "smallvcm")), "knaus-zwicker"
+    )  # exact, or r n^((alpha - 1) / 2)
+    kernel: str = key(Choice(("constant", "epanechnikov")), "constant")
+    min_normal_cosine: float = key(
+        Number(at_least=0, at_most=1), 0.4
+    )  # between the surfaces of photon and vertex
+    light_paths: float = key(Number(at_least=0.01, at_most=64), 1.0)  # per pixel
 
     def __post_init__(self):
         if self.radius is None and self.radius_pixels is None:
@@ -138,15 +150,30 @@ class Render(Node):
     max_path_length: int = key(_count, 12)  # edges
     roulette_length: int = key(Number(at_least=0, whole=True), 4)  # edges before Russian roulette
     seed: int = key(Number(at_least=0, whole=True, limit=2**63 - 1), 1)
-    wavelengths: str = key(Choice(("independent", "shared")), "independent")
+    wavelengths: str = key(Choice(("independent", "shared")), None)  # default: shared by methods that merge
     hero_count: int = key(Choice((1, 4, 8)), 4)  # wavelengths per path
     wavelength_range: tuple[int, int] | None = key(
         numbers(2, "[first, last]", Number(at_least=300, at_most=830, whole=True)), None
     )  # nm; default: 380 to 780, or from 300 where the scene needs it
     sampler: str = key(Choice(("sobol", "independent")), "sobol")
+    heuristic: str = key(Choice(("balance", "power")), "balance")  # of bidirectional methods; power: beta = 2
     merging: Merging = key(Table(Merging), Merging())
 
+    def __post_init__(self):
+        if self.wavelengths is None:
+            object.__setattr__(self, "wavelengths", "shared" if self.integrator in MERGES else "independent")
+
     def problems(self):
+        if self.integrator in MERGES and self.wavelengths != "shared":
+            message = (
+                f'expected "shared", since {self.integrator} merges paths, found {show(self.wavelengths)}'
+            )
+            yield "wavelengths", message
+        if self.integrator != "pt" and self.max_path_length > LONGEST_STORED:
+            message = (
+                f"expected at most {LONGEST_STORED} with {self.integrator}, found {self.max_path_length}"
+            )
+            yield "max_path_length", message
         if self.wavelength_range is not None and self.wavelength_range[0] >= self.wavelength_range[1]:
             yield "wavelength_range", expected("first < last", self.wavelength_range)
 

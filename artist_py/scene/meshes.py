@@ -49,6 +49,10 @@ def _placed(scene, node):
     geometry = scene.geometry[name]
     faces = np.asarray(getattr(geometry, "faces", np.zeros((0, 3))), np.int64)
     vertices = np.asarray(geometry.vertices, np.float64)
+    if vertices.shape[1:] != (3,) or faces.shape[1:] != (3,):
+        raise ValueError(
+            "expected three coordinates for all vertices, and three corners or more for all faces"
+        )
     has_normals = len(faces) and "vertex_normals" in geometry._cache  # noqa: SLF001 - trimesh's way to ask
     normals = np.asarray(geometry.vertex_normals, np.float64) if has_normals else None
     uvs = getattr(getattr(geometry, "visual", None), "uv", None)
@@ -60,7 +64,9 @@ def _placed(scene, node):
                 faces = faces[:, ::-1]  # glTF 2.0, section 3.7.4: a mirror changes the winding
             if normals is not None:
                 normals = normals @ np.linalg.pinv(linear)
-    return Mesh(vertices, faces, normals, None if uvs is None else np.asarray(uvs, np.float32)[:, :2])
+    if uvs is not None and np.shape(uvs)[:1] == vertices.shape[:1]:
+        return Mesh(vertices, faces, normals, np.asarray(uvs, np.float32)[:, :2])
+    return Mesh(vertices, faces, normals)
 
 
 def _joined(meshes):

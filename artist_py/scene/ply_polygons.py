@@ -62,14 +62,16 @@ def _are_equal(data, start, n_faces, count, index):
     if len(data) < start + count.itemsize:
         return False
     first = int(np.frombuffer(data, count, 1, start)[0])
-    face = np.dtype([("size", count), ("corners", index, first)])
-    if len(data) - start != n_faces * face.itemsize:
+    if len(data) - start != n_faces * (count.itemsize + first * index.itemsize):
         return False
+    face = np.dtype([("size", count), ("corners", index, first)])
     return bool((np.frombuffer(data, face, n_faces, start)["size"] == first).all())
 
 
 def _positions(data, start, n_faces, count, index):
     """Where in the data the corners of each face start, and how many there are; two int64 (n_faces,)."""
+    if start + n_faces * count.itemsize > len(data):
+        raise ValueError(f"expected {n_faces} faces, found {max(0, len(data) - start)} bytes")
     positions, sizes = np.zeros(n_faces, np.int64), np.zeros(n_faces, np.int64)
     order = "big" if count.str[0] == ">" else "little"
     for face in range(n_faces):

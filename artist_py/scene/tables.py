@@ -98,6 +98,7 @@ emitter_dtype = np.dtype(
         ("spectrum", "i4"),  # row of the spectra, W m^-2 sr^-1 nm^-1 once scaled
         ("two_sided", "i4"),
         ("quadric", "i4"),
+        ("media", "i8"),  # the dielectrics that it stands in, see transport/media.py
         ("scale", "f8"),
         ("pdf_select", "f8"),  # probability of choosing this emitter, discrete
         ("area", "f8"),  # render-space units squared
@@ -217,6 +218,7 @@ class Filter(NamedTuple):
 
     offsets: Table  # float64 (n + 1,), pixels from the pixel centre
     weights: Table | None  # float64 (n,); absent where the filter is its own density
+    profile: Table  # float64: the filter's value over its width, 1 / pixel, for light that arrives anywhere
 
 
 class Camera(NamedTuple):

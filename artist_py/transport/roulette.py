@@ -2,10 +2,11 @@
 
 from typing import NamedTuple
 
+from ..bsdf.reflectance import has_reflectance
 from ..core.rng import random_number
 from ..core.vector import lane_max
 from ..jit import function
-from .subpath import with_throughput
+from .subpath import Path, with_throughput
 
 
 class Limits(NamedTuple):
@@ -40,3 +41,30 @@ def after_roulette(limits, length, path):
     """The path that survived, its throughput made up for those that did not."""
     survival = survival_probability(limits, length, path)
     return with_throughput(path, path.throughput * (1.0 / survival))
+
+
+@function
+def local_survival(scene, vertex, wavelengths):
+    """Probability that a subpath goes on at a vertex: its reflectance, the same from both sides (theory 1.8).
+
+    Unlike the throughput it may therefore be part of the densities that weights compare.
+    """
+    if not has_reflectance(scene.materials[vertex.surface.material]):
+        return 1.0
+    return min(1.0, float(lane_max(vertex.reflectance)))
+
+
+@function
+def survived(path, survival):
+    """The path that `local_survival` has spared; the density of its direction now holds the survival."""
+    return Path(
+        path.origin,
+        path.direction,
+        path.throughput * (1.0 / survival),
+        path.pdf_solid_angle * survival,
+        path.reference,
+        path.radiance_scale,
+        path.ratio,
+        path.media,
+        False,
+    )

@@ -70,12 +70,30 @@ def store_sample(sensing, spectra, image, row, column, radiance, wavelengths, we
 
 
 @function
+def add_sample(sensing, spectra, image, row, column, contribution, wavelengths):
+    """Add to `image[row, column]`, and to its spectrum where one is wanted, radiance times its wavelengths' weights."""
+    red, green, blue = rgb_of(spectra, contribution, wavelengths)
+    image[row, column, 0] += red
+    image[row, column, 1] += green
+    image[row, column, 2] += blue
+    _add_bands(sensing.bands, row, column, contribution, wavelengths)
+
+
+@function
+def _add_bands(bands, row, column, contribution, wavelengths):
+    if bands is None:
+        return
+    for i in range(lane_count(wavelengths)):
+        band = int((lane(wavelengths, i) - bands.first) / bands.width)
+        band = min(max(band, 0), bands.image.shape[2] - 1)
+        bands.image[row, column, band] += lane(contribution, i) / bands.width
+
+
+@function
 def _store_bands(bands, row, column, contribution, wavelengths):
     if bands is None:
         return
     count = bands.image.shape[2]
     for i in range(count):
         bands.image[row, column, i] = 0.0
-    for i in range(lane_count(wavelengths)):
-        band = min(max(int((lane(wavelengths, i) - bands.first) / bands.width), 0), count - 1)
-        bands.image[row, column, band] += lane(contribution, i) / bands.width
+    _add_bands(bands, row, column, contribution, wavelengths)

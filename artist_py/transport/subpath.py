@@ -62,19 +62,25 @@ def start_path(origin, direction, sensing, media):
 @function
 def vertex_at(scene, surface, path, wavelengths):
     """The path's vertex on `surface`, which its ray has hit."""
+    return vertex_on(scene, surface, -path.direction, wavelengths)
+
+
+@function
+def vertex_on(scene, surface, wo_world, wavelengths):
+    """The vertex on `surface` of a path that came from `wo_world`."""
     frame = frame_around(surface.shading_normal)
-    wo = _on_geometric_side(scene.needs.smooth_triangles, surface, path, to_local(frame, -path.direction))
+    wo = _on_geometric_side(scene.needs.smooth_triangles, surface, wo_world, to_local(frame, wo_world))
     material = scene.materials[surface.material]
     reflectance = reflectance_at(scene.textures, material, scene.spectra, wavelengths, surface.u, surface.v)
     return Vertex(surface, frame, wo, reflectance)
 
 
 @function
-def _on_geometric_side(needed, surface, path, wo):
+def _on_geometric_side(needed, surface, wo_world, wo):
     """`wo` on the side of the surface that it really is on, which interpolated normals may deny near silhouettes."""
     if needed is None:
         return wo
-    return vec3(wo.x, wo.y, math.copysign(wo.z, -dot(path.direction, surface.normal)))
+    return vec3(wo.x, wo.y, math.copysign(wo.z, dot(wo_world, surface.normal)))
 
 
 @function
@@ -112,36 +118,40 @@ def go_straight(scene, surface, material, path):
     )
 
 
+class Scattered(NamedTuple):
+    """A sampled step: the path beyond the vertex, and what weights need to know of it."""
+
+    path: Path
+    pdf_fwd: float  # sr^-1, or the probability of a delta lobe
+    pdf_rev: float  # the same for the walk that comes along the new direction
+    is_delta: bool
+    eta: float  # n on the new side over n on the old one
+
+
 @function
-def scatter(scene, vertex, path, wavelengths, stream, pair, u_lobe):
-    """The path after sampling the BSDF at `vertex`; `pair` is the pair of random dimensions used."""
+def scatter(scene, vertex, path, wavelengths, stream, pair, u_lobe, light_walk):
+    """One step: the BSDF at `vertex` sampled; `pair` is the pair of random dimensions used.
+
+    `light_walk` is `True` for subpaths from a light, `None` for those from the eye (theory 1.7).
+    """
     u, v = random_pair(stream, pair)
     needs, surface = scene.needs, vertex.surface
     material = scene.materials[surface.material]
     is_entering = vertex.wo.z > 0.0
     outside = ior_around(needs.media, scene, material, is_entering, path.media, wavelengths)
     sample = sample_bsdf(
-        needs,
-        material,
-        vertex.reflectance,
-        scene.spectra,
-        wavelengths,
-        vertex.wo,
-        u,
-        v,
-        u_lobe,
-        path.ratio,
-        outside,
-        None,
-    )
+        needs, material, vertex.reflectance, scene.spectra, wavelengths, vertex.wo, u, v, u_lobe, path.ratio, outside,
+        light_walk,
+    )  # fmt: skip
     direction = to_world(vertex.frame, sample.wi)
     is_kept = sample.pdf > 0.0 and is_on_side(needs.smooth_triangles, surface, direction, sample.wi)
     is_refracted = sample.wi.z * vertex.wo.z < 0.0
     beyond = media_beyond(needs.media, material, is_entering, path.media)
-    return Path(
+    adjoint = adjoint_factor(light_walk, needs.smooth_triangles, vertex, direction, sample.wi)
+    onwards = Path(
         leave_surface(surface, direction),
         direction,
-        path.throughput * sample.weight,
+        path.throughput * sample.weight * adjoint,
         0.0 if sample.is_delta else sample.pdf,
         surface.position,
         path.radiance_scale * sample.eta * sample.eta,
@@ -149,3 +159,16 @@ def scatter(scene, vertex, path, wavelengths, stream, pair, u_lobe):
         beyond if is_refracted else path.media,
         not is_kept,
     )
+    return Scattered(onwards, sample.pdf, sample.pdf_rev, sample.is_delta, sample.eta)
+
+
+@function
+def adjoint_factor(light_walk, smooth, vertex, wi_world, wi):
+    """What interpolated normals do to flux that leaves along `wi`: |wo.Ns| |wi.Ng| / (|wo.Ng| |wi.Ns|) (theory 1.7)."""
+    if light_walk is None:
+        return 1.0
+    if smooth is None:
+        return 1.0
+    wo_world = to_world(vertex.frame, vertex.wo)
+    normal = vertex.surface.normal
+    return abs(vertex.wo.z * dot(wi_world, normal)) / max(abs(dot(wo_world, normal) * wi.z), 1e-9)

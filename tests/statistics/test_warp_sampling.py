@@ -25,6 +25,17 @@ def cone(one_minus_cos_max):
     )
 
 
+def power_cosine(n, domain, bins):
+    # Narrow lobes need a power of the cosine that does not lose its digits.
+    def density(w):
+        sin_squared = w[:, 0] ** 2 + w[:, 1] ** 2
+        power = np.exp(0.5 * n * np.log1p(-np.minimum(sin_squared, 1.0 - 1e-15)))
+        return np.where(w[:, 2] > 0.0, (n + 1.0) / (2.0 * np.pi) * power, 0.0)
+
+    sample = rows(lambda u, v: warp.square_to_power_cosine(u, v, n))
+    return ChiSquaredTest(sample, density, domain, samples=20_000, bins=bins)
+
+
 def cosine_density(w):
     return np.maximum(w[:, 2], 0.0) / np.pi
 
@@ -43,6 +54,9 @@ CASES = {
     "hemisphere": cone(1.0),
     "cone": cone(0.1),
     "needle": cone(1e-13),
+    "even power cosine": power_cosine(0.0, SPHERE, (20, 40)),
+    "power cosine": power_cosine(20.0, SPHERE, (40, 20)),
+    "narrow power cosine": power_cosine(1e9, cap(2.5e-8), (20, 20)),
 }
 
 

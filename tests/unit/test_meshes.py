@@ -331,6 +331,21 @@ class TestRefused:
                 ply_text(CORNERS, [(0, 1, 2), (0, -1, 2)]),
                 "face 1 has the vertex -1, expected 0 to 4",
             ),
+            (
+                "a.ply",
+                ply_binary(CORNERS, [(0, 1, 2)]).replace(b"face 1", b"face 900000000000"),
+                "expected 900000000000 faces, found 13 bytes",
+            ),
+            (
+                "a.ply",
+                ply_text(CORNERS[:, :2], [(0, 1, 2)]).replace(b"property float z\n", b""),
+                "expected a whole PLY file, found KeyError: 'z'",
+            ),
+            (
+                "a.obj",
+                b"v 1 2\nv 2 3\nv 0 0\nf 1 2 3\n",
+                "expected three coordinates for all vertices, and three corners or more for all faces",
+            ),
             ("a.ply", ply_text(CORNERS, [(0, 1, 1)]), "none of the 1 triangles has an area"),
             (
                 "a.ply",

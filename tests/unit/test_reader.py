@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from artist_py import data
 from artist_py.errors import Problem, SceneError
 from artist_py.scene import graph, shape_types, spectrum_types, transforms
 from artist_py.scene.fields import Number, keys_of
@@ -58,7 +59,7 @@ class TestValues:
             crop=None,
             filter="blackman-harris",
             filter_radius=1.5,
-            white_luminance=72983.25,
+            white_luminance=72983.4866019817,
         )
         assert scene.camera.up == (0.0, 0.0, 1.0)
         assert scene.camera.field_of_view == 45.0
@@ -78,6 +79,11 @@ class TestValues:
     def test_filter_radius_goes_with_the_filter(self, name, radius):
         assert read(f'[film]\nfilter = "{name}"').film.filter_radius == radius
         assert read(f'[film]\nfilter = "{name}"\nfilter_radius = 3').film.filter_radius == 3.0
+
+    @pytest.mark.parametrize("observer", graph.WHITE_LUMINANCE)
+    def test_a_flat_spectrum_of_radiance_1_is_white(self, observer):
+        white = read(f'[film]\nobserver = "{observer}"').film.white_luminance
+        assert white == pytest.approx(683.002 * data.luminous_integral(observer), rel=1e-12)
 
     def test_thin_lens_focuses_where_it_looks(self):
         lens = 'type = "thin-lens"\naperture_radius = 0.1'

@@ -102,12 +102,14 @@ def render(compiled, settings, observer, stop=None):
 
 def modules():
     """Modules in place of those that do the work."""
-    job, compiler, words = (types.ModuleType(name) for name in ("render_job", "compile", "describe"))
-    job.RenderSettings, job.memory_estimate, job.render = RenderSettings, memory_estimate, render
+    names = "render_job", "memory", "compile", "describe"
+    job, memory, compiler, words = (types.ModuleType(name) for name in names)
+    job.RenderSettings, job.render, memory.memory_estimate = RenderSettings, render, memory_estimate
     compiler.compile_scene, compiler.validate = compile_scene, validate
     words.describe = describe
     return {
         "artist_py.samplers.render_job": job,
+        "artist_py.samplers.memory": memory,
         "artist_py.scene.compile": compiler,
         "artist_py.scene.describe": words,
     }

@@ -1,0 +1,185 @@
+"""Eye subpaths: hit emitters, next-event estimation, connections to the pair's light subpaths, vertices for merges."""
+
+import numpy as np
+
+from ..bsdf.dispatch import is_delta_bsdf
+from ..core.rng import random_number, random_pair
+from ..core.spectra import black
+from ..core.vector import dot
+from ..emitters.dispatch import emitted_radiance, is_emitting_towards, pdf_emitter
+from ..emitters.emission import pdf_emission_of_hit
+from ..geometry.embree import INVALID_ID, closest_hit
+from ..geometry.surface import surface_at
+from ..jit import function
+from ..scene.tables import ABSORBER
+from ..transport.connect import Connected, connect_to_light, connect_vertices, no_connection
+from ..transport.mis import on_arrival, partial_after, weight_of_hit
+from ..transport.roulette import local_survival, survived
+from ..transport.subpath import go_straight, is_passed_through, scatter, vertex_at
+from ..transport.vertices import load_vertex, store_vertex
+from .pair import BSDF, CHOICE, EMITTER, FIRST_VERTEX, PAIRS_PER_VERTEX, ROULETTE, Walk, light_paths_of
+
+
+@function
+def trace_eye_subpath(setup, thread, index, stream, wavelengths, path, partial, film_weight):
+    """Radiance along `path` but for merges, whose vertices are stored with the sample's `film_weight`; a `Walk`."""
+    scene, limits, method = setup.scene, setup.limits, setup.method
+    radiance = black(wavelengths)
+    length, rays, shadow_rays = 1, 0, 0
+    is_specular, begins_specular = True, True  # all vertices so far; the first one
+    while True:
+        rays += 1
+        hit = closest_hit(scene.geometry.embree, path.origin, path.direction, np.inf)
+        if hit.geometry == INVALID_ID:
+            break
+        surface = surface_at(scene.geometry, scene.needs, path.origin, path.direction, hit)
+        material = scene.materials[surface.material]
+        way = surface.position - path.reference
+        cos_in = abs(dot(path.direction, surface.normal))
+        arrived = on_arrival(partial, dot(way, way), cos_in)
+        is_only_way = is_found_by_hits_only(method.techniques, length, is_specular, begins_specular)
+        emitted = emission_hit(scene, method, surface, path, arrived, is_only_way, wavelengths)
+        radiance = radiance + path.throughput * emitted
+        if is_passed_through(scene, surface, material, path):
+            path = go_straight(scene, surface, material, path)
+            continue
+        if material.kind == ABSORBER or length >= limits.max_length:
+            break
+        partial = arrived
+        vertex = vertex_at(scene, surface, path, wavelengths)
+        survival = local_survival(scene, vertex, wavelengths)
+        pair = FIRST_VERTEX + (length - 1) * PAIRS_PER_VERTEX
+        u_select, u_lobe = random_pair(stream, pair + CHOICE)
+        if not is_delta_bsdf(material):
+            is_specular = False
+            begins_specular = begins_specular and length > 1
+            joined = connect(
+                setup, index, vertex, partial, survival, length, wavelengths, stream, pair + EMITTER, u_select
+            )
+            radiance = radiance + path.throughput * joined.value
+            shadow_rays += joined.rays
+            _store(setup.stores.eye, thread, surface, path, partial, length, index, film_weight)
+            if _ends_at_merge(method.techniques.merge_once):
+                break
+        if (
+            _is_done(method.techniques, begins_specular)
+            or random_number(stream, ROULETTE + length) >= survival
+        ):
+            break
+        step = scatter(scene, vertex, path, wavelengths, stream, pair + BSDF, u_lobe, None)
+        if step.path.is_absorbed:
+            break
+        partial = partial_after(method.counts, partial, step, surface, survival, cos_in)
+        path = survived(step.path, survival)
+        length += 1
+    return Walk(radiance, rays, shadow_rays)
+
+
+@function
+def connect(setup, index, vertex, partial, survival, length, wavelengths, stream, pair, u_select):
+    """Next-event estimation and connections at an eye vertex, as far as the method has them; `Connected`."""
+    techniques = setup.method.techniques
+    u, v = random_pair(stream, pair)
+    direct = _next_event(techniques.nee, setup, vertex, partial, survival, wavelengths, u, v, u_select)
+    others = _connect_all(techniques.connect, setup, index, vertex, partial, survival, length, wavelengths)
+    return Connected(direct.value + others.value, direct.rays + others.rays)
+
+
+@function
+def _next_event(needed, setup, vertex, partial, survival, wavelengths, u, v, u_select):
+    if needed is None:
+        return no_connection(wavelengths)
+    counts = setup.method.counts
+    return connect_to_light(setup.scene, counts, vertex, partial, survival, wavelengths, u, v, u_select)
+
+
+@function
+def _connect_all(needed, setup, index, vertex, partial, survival, length, wavelengths):
+    """Connections to all vertices of the pixel's light subpaths."""
+    if needed is None:
+        return no_connection(wavelengths)
+    scene, limits = setup.scene, setup.limits
+    total, rays = black(wavelengths), 0
+    first, end = light_paths_of(setup.method, index)
+    if first == end:
+        return no_connection(wavelengths)
+    # The vertices of a pixel's light subpaths stand one after the other.
+    last = setup.stores.paths[end - 1]
+    for i in range(setup.stores.paths[first].first_vertex, last.first_vertex + last.n_vertices):
+        row = setup.stores.light.records[i]
+        stored = load_vertex(scene, row, setup.sensing.zero, wavelengths)
+        if stored.length + length + 1 > limits.max_length:
+            continue
+        light_survival = local_survival(scene, stored.vertex, wavelengths)
+        joined = connect_vertices(
+            scene, setup.method.counts, vertex, partial, survival, stored, light_survival, wavelengths
+        )
+        total = total + joined.value
+        rays += joined.rays
+    return Connected(total, rays)
+
+
+@function
+def _store(pool, thread, surface, path, partial, length, index, film_weight):
+    if pool is None:
+        return
+    throughput = path.throughput * film_weight
+    store_vertex(pool, thread, surface, -path.direction, throughput, partial, length, index)
+
+
+@function
+def _ends_at_merge(merge_once):
+    return merge_once is not None
+
+
+@function
+def _is_done(techniques, begins_specular):
+    """Whether nothing is to be found further along: with light tracing alone, once the first vertex is connectable."""
+    return _finds_nothing(techniques.nee, techniques.connect, techniques.merge) and not begins_specular
+
+
+@function
+def _finds_nothing(nee, connects, merge):
+    # Nested, because numba prunes a test for None but not a conjunction.
+    if nee is None:
+        if connects is None:  # noqa: SIM102
+            if merge is None:
+                return True
+    return False
+
+
+@function
+def is_found_by_hits_only(techniques, length, is_specular, begins_specular):
+    """Whether no other technique of a method without hits finds a path that ends on an emitter here (theory 1.9)."""
+    if techniques.merge is not None:
+        return is_specular
+    return length == 1 or begins_specular
+
+
+@function
+def emission_hit(scene, method, surface, path, partial, is_only_way, wavelengths):
+    """Radiance of an emitter that was hit, with its weight (1.17)."""
+    return _emission_hit(scene.emitters, scene, method, surface, path, partial, is_only_way, wavelengths)
+
+
+@function
+def _emission_hit(emitters, scene, method, surface, path, partial, is_only_way, wavelengths):
+    if emitters is None:
+        return black(wavelengths)
+    if surface.emitter < 0:
+        return black(wavelengths)
+    emitter = emitters.records[surface.emitter]
+    if not is_emitting_towards(emitter, surface.normal, -path.direction):
+        return black(wavelengths)
+    radiance = emitted_radiance(scene.spectra, emitter, wavelengths)
+    if not method.hits_everything:
+        return radiance * (1.0 if is_only_way else 0.0)
+    nee_ratio = 0.0
+    if path.pdf_solid_angle > 0.0:
+        reference = path.reference
+        density = pdf_emitter(
+            scene.needs, scene.geometry, emitter, reference, surface.position, surface.normal
+        )
+        nee_ratio = density / path.pdf_solid_angle
+    emission = pdf_emission_of_hit(scene.needs, scene.geometry, emitter, surface, path.direction)
+    return radiance * weight_of_hit(method.counts, nee_ratio, emission, partial)

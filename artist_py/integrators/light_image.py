@@ -1,0 +1,35 @@
+"""Adding the light image: splats of all light subpaths, in the order of the subpaths, whatever the threads."""
+
+from ..core.rng import stream_of
+from ..core.vector import with_lane
+from ..jit import function, kernel
+from ..transport.sensing import add_sample, wavelengths_of_path
+from .path_tracing import WAVELENGTH
+
+
+@kernel
+def add_splats(setup, first, end, image):
+    """Add the splats that lie on rows [first, end) of the window to `image` (h, w, 3)."""
+    scene, sensing, work = setup.scene, setup.sensing, setup.work
+    paths, splats = setup.stores.paths, setup.stores.splats.records
+    width = work.crop[1] - work.crop[0]
+    for index in range(paths.shape[0]):
+        path = paths[index]
+        if path.n_splats > 0:
+            pixel = (path.pixel // width + work.crop[2]) * work.width + path.pixel % width + work.crop[0]
+            stream = stream_of(work.seed, work.iteration, pixel, work.stratified_pairs)
+            wavelengths, weights = wavelengths_of_path(sensing, stream, WAVELENGTH)
+            for i in range(path.n_splats):
+                splat = splats[path.first_splat + i]
+                row = splat.pixel // width
+                if first <= row < end:
+                    value = _value(splat, wavelengths) * weights
+                    add_sample(sensing, scene.spectra, image, row, splat.pixel % width, value, wavelengths)
+
+
+@function
+def _value(splat, zero):
+    value = zero
+    for i in range(len(splat.value)):
+        value = with_lane(value, i, splat.value[i])
+    return value

@@ -1,0 +1,177 @@
+"""Light subpaths: emitted, splatted to the camera at every vertex, stored for connections and merges."""
+
+import numpy as np
+
+from ..bsdf.dispatch import is_delta_bsdf
+from ..cameras.sensor import connect_to_lens
+from ..core.rng import random_number, random_pair
+from ..core.spectra import black
+from ..core.vector import dot
+from ..emitters.dispatch import choose_emitter, emitted_radiance
+from ..emitters.emission import hit_over_emission, next_event_over_emission, sample_emission
+from ..geometry.embree import INVALID_ID, closest_hit
+from ..geometry.surface import offset_position, surface_at
+from ..jit import function
+from ..scene.tables import ABSORBER
+from ..transport.connect import connect_to_camera
+from ..transport.mis import Partial, on_arrival, partial_after
+from ..transport.roulette import local_survival, survived
+from ..transport.splats import choose_pixel, store_splat
+from ..transport.subpath import Path, go_straight, is_passed_through, scatter, vertex_at
+from ..transport.vertices import store_vertex
+from .pair import (
+    BSDF,
+    CHOICE,
+    EMITTER_CHOICE,
+    FIRST_VERTEX,
+    PAIRS_PER_VERTEX,
+    PIXEL_CHOICE,
+    ROULETTE,
+    SENSOR,
+    Walk,
+)
+
+
+@function
+def trace_light_subpath(setup, thread, index, pixel, stream, wavelengths):
+    """Light subpath `index`, of pixel `pixel`, where the method has some and the scene emitters; a `Walk`."""
+    return _trace(
+        setup.method.techniques.light_paths,
+        setup.scene.emitters,
+        setup,
+        thread,
+        index,
+        pixel,
+        stream,
+        wavelengths,
+    )
+
+
+@function
+def _trace(needed, emitters, setup, thread, index, pixel, stream, wavelengths):
+    if needed is None:
+        return Walk(black(wavelengths), 0, 0)
+    if emitters is None:
+        return Walk(black(wavelengths), 0, 0)
+    begin_path(setup.stores, thread, index, pixel)
+    emitter = emitters.records[choose_emitter(emitters.alias, random_number(stream, EMITTER_CHOICE))]
+    u, v = random_pair(stream, 0)
+    u_direction, v_direction = random_pair(stream, 1)
+    start = sample_emission(setup.scene.needs, setup.scene.geometry, emitter, u, v, u_direction, v_direction)
+    if not start.density > 0.0:
+        return Walk(black(wavelengths), 0, 0)
+    throughput = emitted_radiance(setup.scene.spectra, emitter, wavelengths) * (
+        start.cos_theta / start.density
+    )
+    origin = offset_position(start.position, start.normal, start.extent, start.direction)
+    path = Path(
+        origin, start.direction, throughput, 0.0, start.position, 1.0, setup.sensing.ratio, emitter.media, False
+    )  # fmt: skip
+    return _walk(setup, thread, index, stream, wavelengths, emitter, start, path)
+
+
+@function
+def _walk(setup, thread, index, stream, wavelengths, emitter, start, path):
+    scene, limits, counts = setup.scene, setup.limits, setup.method.counts
+    partial = Partial(counts.nee, counts.hit * hit_over_emission(start))
+    length, rays, shadow_rays = 1, 0, 0
+    while True:
+        rays += 1
+        hit = closest_hit(scene.geometry.embree, path.origin, path.direction, np.inf)
+        if hit.geometry == INVALID_ID:
+            break
+        surface = surface_at(scene.geometry, scene.needs, path.origin, path.direction, hit)
+        material = scene.materials[surface.material]
+        if is_passed_through(scene, surface, material, path):
+            path = go_straight(scene, surface, material, path)
+            continue
+        if material.kind == ABSORBER or length >= limits.max_length:
+            break
+        cos_in = abs(dot(path.direction, surface.normal))
+        partial = _arrived(scene, emitter, start, path, surface, partial, length, cos_in)
+        vertex = vertex_at(scene, surface, path, wavelengths)
+        survival = local_survival(scene, vertex, wavelengths)
+        pair = FIRST_VERTEX + (length - 1) * PAIRS_PER_VERTEX
+        if not is_delta_bsdf(material):
+            _store(setup.stores.light, setup.stores.paths, thread, index, surface, path, partial, length)
+            shadow_rays += splat(
+                setup, thread, index, vertex, partial, survival, path, wavelengths, stream, pair
+            )
+        if length + 1 >= limits.max_length or random_number(stream, ROULETTE + length) >= survival:
+            break
+        _, u_lobe = random_pair(stream, pair + CHOICE)
+        step = scatter(scene, vertex, path, wavelengths, stream, pair + BSDF, u_lobe, True)
+        if step.path.is_absorbed:
+            break
+        partial = partial_after(counts, partial, step, surface, survival, cos_in)
+        path = survived(step.path, survival)
+        length += 1
+    return Walk(black(wavelengths), rays, shadow_rays)
+
+
+@function
+def _arrived(scene, emitter, start, path, surface, partial, length, cos_in):
+    """C and E on arrival; on the first edge C is what next-event estimation from here would do (1.5)."""
+    way = surface.position - path.reference
+    distance_squared = dot(way, way)
+    if length > 1:
+        return on_arrival(partial, distance_squared, cos_in)
+    ratio = next_event_over_emission(
+        scene.needs, scene.geometry, emitter, start, surface.position, distance_squared
+    )
+    return on_arrival(Partial(partial.c * ratio, partial.e), 1.0, cos_in)
+
+
+@function
+def begin_path(stores, thread, index, pixel):
+    """Note where the records of light subpath `index` begin."""
+    record = stores.paths[index]
+    record.n_vertices = 0
+    record.n_splats = 0
+    record.pixel = pixel
+    record.first_vertex = _next_record(stores.light, thread)
+    record.first_splat = _next_record(stores.splats, thread)
+
+
+@function
+def _next_record(pool, thread):
+    if pool is None:
+        return 0
+    return pool.ends[thread, 0]
+
+
+@function
+def _store(pool, paths, thread, index, surface, path, partial, length):
+    if pool is None:
+        return
+    store_vertex(pool, thread, surface, -path.direction, path.throughput, partial, length, index)
+    paths[index].n_vertices += 1
+
+
+@function
+def splat(setup, thread, index, vertex, partial, survival, path, wavelengths, stream, pair):
+    """Connect a light vertex to the camera, where the method has a light image; returns the number of shadow rays."""
+    return _splat(
+        setup.method.techniques.light_image, setup, thread, index, vertex, partial, survival, path, wavelengths,
+        stream, pair,
+    )  # fmt: skip
+
+
+@function
+def _splat(needed, setup, thread, index, vertex, partial, survival, path, wavelengths, stream, pair):
+    if needed is None:
+        return 0
+    u, v = random_pair(stream, pair + SENSOR)
+    sensor = connect_to_lens(setup.camera, setup.method.n_pixels, vertex.surface.position, u, v)
+    if sensor.pdf_solid_angle == 0.0:
+        return 0
+    number = random_number(stream, PIXEL_CHOICE + pair)
+    pixel = choose_pixel(setup.pixel_filter, sensor.film_x, sensor.film_y, number, setup.work.crop)
+    if pixel.index < 0:
+        return 0
+    connected = connect_to_camera(
+        setup.scene, setup.method.counts, vertex, partial, survival, sensor, wavelengths
+    )
+    value = path.throughput * connected.value * (pixel.weight / setup.method.n_light_paths)
+    store_splat(setup.stores.splats, thread, setup.stores.paths[index], pixel.index, value)
+    return connected.rays

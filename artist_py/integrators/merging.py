@@ -1,0 +1,35 @@
+"""The merging pass: photons gathered around the eye vertices that the first pass has stored. No ray is traced."""
+
+from ..core.atomic import fetch_and_add
+from ..core.rng import stream_of
+from ..jit import kernel
+from ..transport.merge import merge_at
+from ..transport.roulette import local_survival
+from ..transport.sensing import add_sample, wavelengths_of_path
+from ..transport.vertices import CHUNK, load_vertex
+
+NEXT_CHUNK, MERGES = range(2)  # in progress
+
+
+@kernel
+def gather(setup, grid, merging, progress, image):
+    """Take chunks of stored eye vertices until none is left; add what they gather to `image` (h, w, 3)."""
+    scene, sensing, work, eye = setup.scene, setup.sensing, setup.work, setup.stores.eye
+    stream = stream_of(work.seed, work.iteration, 0, 0)
+    wavelengths, weights = wavelengths_of_path(sensing, stream, 0)
+    width = work.crop[1] - work.crop[0]
+    merges = 0
+    while True:
+        chunk = fetch_and_add(progress, NEXT_CHUNK, 1)
+        if chunk >= eye.state[0]:
+            break
+        for index in range(chunk * CHUNK, chunk * CHUNK + eye.used[chunk]):
+            record = eye.records[index]
+            stored = load_vertex(scene, record, sensing.zero, wavelengths)
+            survival = local_survival(scene, stored.vertex, wavelengths)
+            merged = merge_at(scene, setup.method, grid, merging, stored, survival, setup.limits, wavelengths)
+            merges += merged.count
+            value = stored.throughput * merged.value * weights
+            row, column = record.pixel // width, record.pixel % width
+            add_sample(sensing, scene.spectra, image, row, column, value, wavelengths)
+    fetch_and_add(progress, MERGES, merges)

@@ -1,0 +1,217 @@
+"""The backwards image sampler: for all methods that start at the lights.
+
+One iteration traces light and eye subpaths over tiles of 32 x 32; behind a barrier the photons are sorted into a grid;
+behind another they are gathered around the stored eye vertices. No ray is traced twice and no vertex is dropped, and
+images are the same to the bit for any number of threads: what threads do at the same time never meets in one sum.
+"""
+
+import math
+import time
+from itertools import pairwise
+
+import numpy as np
+
+from ..core.table import Table
+from ..film.accumulation import add_rows
+from ..integrators.bidirectional import trace_pairs
+from ..integrators.light_image import add_splats
+from ..integrators.merging import MERGES, gather
+from ..integrators.methods import METHODS, method_of
+from ..integrators.pair import Setup, Stores, path_dtype
+from ..integrators.path_tracing import RAYS, SHADOW_RAYS, STOP, Pass
+from ..transport.merge import Merging
+from ..transport.photon_grid import Grid, count_photons, photon_dtype, place_photons
+from ..transport.splats import splat_dtype
+from ..transport.vertices import CHUNK, NEXT_CHUNK, SHORTAGE, Pool, vertex_dtype
+from .memory import RECORDS_PER_PATH
+from .stochastic import StochasticSampler
+from .wavelengths import van_der_corput
+
+SMALLEST_RADIUS = 1e-7  # of the scene's radius: below, float32 positions decide what is near
+
+
+def radius_of(first, alpha, iteration, schedule="knaus-zwicker"):
+    """Merge radius of an iteration: r_{n+1}^2 = r_n^2 (n + alpha) / (n + 1) (Knaus and Zwicker 2011).
+
+    In closed form, so that an iteration depends on its index alone: the product is a ratio of gamma functions.
+    "smallvcm" is the approximation r_1 n^((alpha - 1) / 2) of Georgiev's implementation.
+    """
+    n = iteration + 1
+    if schedule == "smallvcm":
+        return first * n ** (0.5 * (alpha - 1.0))
+    log_ratio = math.lgamma(n + alpha) - math.lgamma(1 + alpha) - math.lgamma(n + 1)
+    return first * math.exp(0.5 * log_ratio)
+
+
+class BackwardsSampler(StochasticSampler):
+    """Drives a bidirectional method over a film; a context manager, because it owns threads."""
+
+    def __init__(self, compiled, film, threads, light_paths):
+        super().__init__(compiled, film, threads)
+        render = compiled.graph.render
+        self.method_name, self.merging = render.integrator, render.merging
+        self.subset = METHODS[render.integrator]
+        self.n_pixels = film.width * film.height
+        self.light_paths = light_paths  # per pixel
+        self.lanes = render.hero_count
+        self.counts = {"light_vertices": 0, "eye_vertices": 0, "merges": 0}
+        self.phases = dict.fromkeys(("subpaths", "photon_grid", "merging", "light_image", "film"), 0.0)
+        self.paths = Table(np.zeros(math.ceil(self.n_pixels * self.light_paths) + 1, path_dtype))
+        self.light = self._pool(vertex_dtype(self.lanes), self.subset.connect or self.subset.merge)
+        self.eye = self._pool(vertex_dtype(self.lanes), self.subset.merge)
+        self.splats = self._pool(splat_dtype(self.lanes), self.subset.light_image)
+
+    # --- stores
+
+    def _pool(self, dtype, is_needed):
+        """An empty pool with room for some records per path, or `None`."""
+        if not is_needed:
+            return None
+        chunks = len(self.paths) * RECORDS_PER_PATH // CHUNK + 2 * self.threads + 1
+        return self._pool_of(np.empty(chunks * CHUNK, dtype))
+
+    def _pool_of(self, records):
+        ends = Table(np.zeros((self.threads, 2), np.int64))
+        used = Table(np.zeros(len(records) // CHUNK, np.int32))
+        return Pool(Table(records), Table(np.zeros(2, np.int64)), ends, used)
+
+    def _enlarge(self):
+        """Give the pools that ran short half as much again; `False` if none did."""
+        short = [name for name in ("light", "eye", "splats") if _is_short(getattr(self, name))]
+        for name in short:
+            pool = getattr(self, name)
+            old = pool.records.array
+            more = max(len(old) // 2 // CHUNK, 2 * self.threads) * CHUNK
+            records = np.empty(len(old) + more, pool.records.dtype)
+            records[: len(old)] = old
+            grown = self._pool_of(records)
+            grown.state[NEXT_CHUNK] = pool.state[NEXT_CHUNK]
+            grown.ends[:] = pool.ends.array
+            grown.used[: len(pool.used)] = pool.used.array
+            setattr(self, name, grown)
+        return bool(short)
+
+    # --- one iteration
+
+    def iterate(self, iteration, stop=None):
+        """Trace the subpaths of an iteration, merge, and add to the film; `False` if `stop` was set meanwhile."""
+        begun = time.monotonic()
+        for pool in (self.light, self.eye, self.splats):
+            _empty(pool)
+        progress = np.zeros(4, np.int64)
+        resume = np.full((self.threads, 2), -1, np.int64)
+        while True:
+            setup, radius = self._setup(iteration, progress, resume)
+            calls = [(trace_pairs, (setup, i, Table(self.image))) for i in range(self.threads)]
+            self.run(calls, stop, progress)
+            if progress[STOP]:
+                return False
+            if not self._enlarge():
+                break
+        self.phases["subpaths"] += time.monotonic() - begun
+        self._merge(setup, radius)
+        self._add_light_image(setup)
+        self.add_to_film(iteration)
+        self.rays = self.rays[0] + int(progress[RAYS]), self.rays[1] + int(progress[SHADOW_RAYS])
+        return True
+
+    def _setup(self, iteration, progress, resume):
+        """`(setup, radius)` of an iteration, with the stores as they are now."""
+        compiled = self.compiled
+        scene, sensing = self.scene_and_sensing(iteration, self.bands)
+        work = Pass(self.seed, iteration, self.stratified_pairs, self.crop, self.width, Table(progress))
+        radius = self._radius(iteration)
+        method = method_of(
+            self.method_name,
+            self.n_pixels,
+            self.light_paths,
+            van_der_corput(iteration),
+            math.pi * radius**2,
+            compiled.graph.render.heuristic == "power",
+        )
+        stores = Stores(self.light, self.eye, self.splats, self.paths, Table(resume))
+        camera, pixel_filter = compiled.camera, compiled.pixel_filter
+        return Setup(scene, camera, pixel_filter, sensing, self.limits, work, method, stores), radius
+
+    def _radius(self, iteration):
+        """Merge radius in render space."""
+        merging, space, camera = self.merging, self.compiled.space, self.compiled.graph.camera
+        scene_radius = space.radius * space.scale
+        if merging.radius_pixels is None:
+            first = merging.radius * scene_radius
+        else:
+            pixel = float(np.linalg.norm(self.compiled.camera.right.values))
+            first = merging.radius_pixels * pixel * math.hypot(*camera.view()) * space.scale
+        radius = radius_of(first, merging.alpha, iteration, merging.schedule)
+        return max(radius, SMALLEST_RADIUS * scene_radius)
+
+    def _grid(self, n_photons, radius):
+        """An empty grid for so many photons."""
+        buckets = 1 << max((n_photons - 1).bit_length(), 4)
+        photons = np.empty(n_photons, photon_dtype(self.lanes))
+        return Grid(Table(photons), Table(np.zeros(buckets + 1, np.int64)), 2.0 * radius)
+
+    def _merging(self, setup, radius):
+        return Merging(
+            radius,
+            1.0 / (math.pi * radius**2 * setup.method.n_light_paths),
+            self.merging.min_normal_cosine,
+            True if self.merging.kernel == "epanechnikov" else None,
+        )
+
+    def _merge(self, setup, radius):
+        """Sort the photons, and gather them around the stored eye vertices."""
+        if self.eye is None:
+            return
+        begun = time.monotonic()
+        grid = self._grid(int(self.paths.array["n_vertices"].sum()), radius)
+        ranges = list(pairwise(np.linspace(0, len(grid.starts) - 1, self.threads + 1).astype(int).tolist()))
+        records = self.light.records
+        counts = self.run([(count_photons, (grid, records, self.paths, *each)) for each in ranges])
+        before = np.cumsum([0, *counts]).tolist()
+        places = zip(ranges, before, strict=False)
+        self.run([(place_photons, (grid, records, self.paths, *each, start)) for each, start in places])
+        sorted_at = time.monotonic()
+        merging = self._merging(setup, radius)
+        progress = np.zeros(2, np.int64)
+        self.run([(gather, (setup, grid, merging, Table(progress), Table(self.image)))] * self.threads)
+        self.counts["light_vertices"] += len(grid.photons)
+        self.counts["eye_vertices"] += int(self.eye.used.array.sum())
+        self.counts["merges"] += int(progress[MERGES])
+        self.phases["photon_grid"] += sorted_at - begun
+        self.phases["merging"] += time.monotonic() - sorted_at
+
+    def _add_light_image(self, setup):
+        if self.splats is None:
+            return
+        begun = time.monotonic()
+        edges = np.linspace(0, self.film.height, self.threads + 1).astype(int).tolist()
+        self.run([(add_splats, (setup, *rows, Table(self.image))) for rows in pairwise(edges)])
+        self.phases["light_image"] += time.monotonic() - begun
+
+    # --- compilation
+
+    def compile_kernels(self, observer):
+        """Compile the kernels, or load them from the cache; returns seconds. Says so if it takes a while."""
+        image = Table(self.image)
+        setup, radius = self._setup(0, np.zeros(4, np.int64), np.full((self.threads, 2), -1, np.int64))
+        calls = [(trace_pairs, (setup, 0, image)), (add_rows, self._rows(0, 0, 0, self._places()))]
+        if self.splats is not None:
+            calls.append((add_splats, (setup, 0, 0, image)))
+        if self.eye is not None:
+            grid, merging = self._grid(0, radius), self._merging(setup, radius)
+            calls.append((count_photons, (grid, self.light.records, self.paths, 0, 0)))
+            calls.append((place_photons, (grid, self.light.records, self.paths, 0, 0, 0)))
+            calls.append((gather, (setup, grid, merging, Table(np.zeros(2, np.int64)), image)))
+        return self.compile_calls(calls, observer)
+
+
+def _is_short(pool):
+    return pool is not None and bool(pool.state[SHORTAGE])
+
+
+def _empty(pool):
+    """Forget what a pool holds."""
+    if pool is not None:
+        for table in (pool.state, pool.ends, pool.used):
+            table.array[...] = 0

@@ -1,0 +1,96 @@
+"""What a render stores, in bytes, and how it is kept within a bound."""
+
+import numpy as np
+
+from ..core.table import Table
+from ..errors import OptionError
+from ..integrators.methods import METHODS
+from ..transport.photon_grid import photon_dtype
+from ..transport.splats import splat_dtype
+from ..transport.vertices import vertex_dtype
+
+BAND_NM = 10
+RECORDS_PER_PATH = 4  # vertices that are stored of a subpath, about; pools that run short grow
+BYTES_PER_FACE = 110  # of Embree's acceleration structure, about
+FEWEST_LIGHT_PATHS = 0.05  # per pixel
+
+
+def crop_of(graph):
+    """Pixels to render, (x0, x1, y0, y1), half open."""
+    width, height = graph.film.resolution
+    return graph.film.crop or (0, width, 0, height)
+
+
+def band_edges(compiled):
+    """Edges of the spectral bands, nm."""
+    first, last = compiled.wavelength_range
+    return np.arange(first, last + BAND_NM - 1, BAND_NM, dtype=float)
+
+
+def pixels_of(graph):
+    """Number of pixels to render."""
+    x0, x1, y0, y1 = crop_of(graph)
+    return (x1 - x0) * (y1 - y0)
+
+
+def memory_estimate(compiled, settings):
+    """Bytes that a render needs beyond the interpreter: `{what: bytes}`."""
+    pixels = pixels_of(compiled.graph)
+    bands = len(band_edges(compiled)) - 1 if settings.spectral else 0
+    geometry = compiled.scene.geometry
+    arrays = [array for array in geometry if isinstance(array, Table)]
+    emitters = compiled.scene.emitters
+    faces = len(geometry.triangles) + len(geometry.parallelograms)
+    light_paths = compiled.graph.render.merging.light_paths
+    return {
+        "film": pixels * (12 + 24 + 12 + (24 if "variance" in settings.aovs else 0) + 12 * bands),
+        "auxiliary outputs": pixels * 60 if set(settings.aovs) - {"variance"} else 0,
+        "geometry": sum(array.nbytes for array in arrays) + (emitters.records.nbytes if emitters else 0),
+        "acceleration structure": BYTES_PER_FACE * faces,
+        "spectra": compiled.spectra.nbytes,
+        "textures": sum(image.nbytes for image in compiled.images),
+        "eye vertices": pixels * _bytes_per_eye_path(compiled.graph.render),
+        "light vertices": round(pixels * light_paths * _bytes_per_light_path(compiled.graph.render)),
+    }
+
+
+def _bytes_per_eye_path(render):
+    method = METHODS.get(render.integrator)
+    return RECORDS_PER_PATH * vertex_dtype(render.hero_count).itemsize if method and method.merge else 0
+
+
+def _bytes_per_light_path(render):
+    """Stored vertices, their copies in the photon grid, and splats."""
+    method, lanes = METHODS.get(render.integrator), render.hero_count
+    if method is None:
+        return 0
+    size = 40
+    if method.merge:
+        size += RECORDS_PER_PATH * (vertex_dtype(lanes).itemsize + photon_dtype(lanes).itemsize + 16)
+    if method.light_image:
+        size += RECORDS_PER_PATH * splat_dtype(lanes).itemsize
+    return size
+
+
+def light_paths_within(compiled, settings, warn):
+    """Light subpaths per pixel that `max_memory_bytes` leaves room for: as the scene asks for, or fewer.
+
+    Estimates divide by the number of light subpaths, so that fewer of them mean more noise and no bias. Raises an
+    `OptionError` where nothing but a smaller image would help.
+    """
+    wanted = compiled.graph.render.merging.light_paths
+    if settings.max_memory_bytes is None:
+        return wanted
+    parts = memory_estimate(compiled, settings)
+    needed = sum(parts.values())
+    over = needed - settings.max_memory_bytes
+    if over <= 0:
+        return wanted
+    share = 1.0 - over / parts["light vertices"] if parts["light vertices"] else 0.0
+    if wanted * share >= FEWEST_LIGHT_PATHS:
+        warn(f"--max-memory: {wanted * share:.3g} light paths per pixel instead of {wanted:.3g}")
+        return wanted * share
+    raise OptionError(
+        f"--max-memory: this render needs about {needed / 2**20:.0f} MiB, and "
+        f"{settings.max_memory_bytes / 2**20:.0f} MiB are allowed; render it in parts with --crop"
+    )

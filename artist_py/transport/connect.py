@@ -1,0 +1,145 @@
+"""Connections: eye vertex to emitter, eye vertex to light vertex, light vertex to lens; with their weights."""
+
+import math
+from typing import NamedTuple
+
+from ..bsdf.dispatch import evaluate_bsdf, pdf_bsdf
+from ..core.frame import to_local
+from ..core.spectra import black
+from ..core.vector import Spectrum, dot
+from ..emitters.dispatch import choose_emitter, emitted_radiance, is_emitting_towards, sample_emitter
+from ..emitters.emission import emission_over_next_event
+from ..geometry.embree import is_occluded
+from ..geometry.surface import leave_surface, offset_position
+from ..jit import function
+from .mis import bracket, weight_of_connection, weight_of_light_image, weight_of_next_event
+from .subpath import adjoint_factor, is_on_side
+
+
+class Scattering(NamedTuple):
+    """A BSDF evaluated for one more direction; densities hold the survival probability."""
+
+    f_cos: Spectrum  # f |cos| with the shading normal
+    pdf_fwd: float  # of sampling the direction, sr^-1
+    pdf_rev: float  # of sampling back along the subpath when coming from the direction, sr^-1
+    cos_theta: float  # |cos| with the geometric normal
+    is_black: bool
+
+
+@function
+def scattering_towards(scene, vertex, wi_world, wavelengths, survival, light_walk):
+    """What the BSDF at `vertex` does for light between its subpath and the unit direction `wi_world`."""
+    material = scene.materials[vertex.surface.material]
+    smooth = scene.needs.smooth_triangles
+    wi = to_local(vertex.frame, wi_world)
+    pdf = pdf_bsdf(scene.needs, material, vertex.wo, wi)
+    is_black = pdf == 0.0 or not is_on_side(smooth, vertex.surface, wi_world, wi)
+    f = evaluate_bsdf(scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, vertex.wo, wi)
+    adjoint = adjoint_factor(light_walk, smooth, vertex, wi_world, wi)
+    return Scattering(
+        f * (abs(wi.z) * adjoint),
+        pdf * survival,
+        pdf_bsdf(scene.needs, material, wi, vertex.wo) * survival,
+        abs(dot(wi_world, vertex.surface.normal)),
+        is_black,
+    )
+
+
+@function
+def is_blocked(scene, surface, towards, end):
+    """Whether something stands between `surface` and the point `end` in the direction `towards`."""
+    start = leave_surface(surface, towards)
+    return is_occluded(scene.geometry.embree, start, end - start, 1.0)
+
+
+class Connected(NamedTuple):
+    """What a connection brings, weighted, and the shadow rays it took."""
+
+    value: Spectrum
+    rays: int
+
+
+@function
+def no_connection(wavelengths):
+    """A connection that brings nothing and took no ray."""
+    return Connected(black(wavelengths), 0)
+
+
+@function
+def connect_to_light(scene, counts, vertex, partial, survival, wavelengths, u, v, u_select):
+    """Next-event estimation at an eye vertex with its weight (1.15); radiance per throughput."""
+    return _to_light(scene.emitters, scene, counts, vertex, partial, survival, wavelengths, u, v, u_select)
+
+
+@function
+def _to_light(emitters, scene, counts, vertex, partial, survival, wavelengths, u, v, u_select):
+    nothing = no_connection(wavelengths)
+    if emitters is None:
+        return nothing
+    emitter = emitters.records[choose_emitter(emitters.alias, u_select)]
+    position = vertex.surface.position
+    point = sample_emitter(scene.needs, scene.geometry, emitter, position, u, v)
+    towards = point.position - position
+    if point.pdf_solid_angle == 0.0 or not is_emitting_towards(emitter, point.normal, -towards):
+        return nothing
+    wi = towards * (1.0 / math.sqrt(dot(towards, towards)))
+    there = scattering_towards(scene, vertex, wi, wavelengths, survival, None)
+    end = offset_position(point.position, point.normal, point.extent, -wi)
+    if there.is_black:
+        return nothing
+    if is_blocked(scene, vertex.surface, wi, end):
+        return Connected(black(wavelengths), 1)
+    pdf_light = point.pdf_solid_angle * emitter.pdf_select
+    emission = emission_over_next_event(scene.needs, scene.geometry, emitter, point, towards, pdf_light)
+    weight = weight_of_next_event(
+        counts,
+        there.pdf_fwd / pdf_light,
+        emission * there.cos_theta,
+        bracket(counts, partial, there.pdf_rev),
+    )
+    radiance = emitted_radiance(scene.spectra, emitter, wavelengths)
+    return Connected(radiance * there.f_cos * (weight / pdf_light), 1)
+
+
+@function
+def connect_vertices(scene, counts, eye, eye_partial, eye_survival, light, light_survival, wavelengths):
+    """An eye vertex joined with a stored light vertex, with its weight (1.13); radiance per eye throughput."""
+    nothing = no_connection(wavelengths)
+    towards = light.vertex.surface.position - eye.surface.position
+    distance_squared = dot(towards, towards)
+    if distance_squared == 0.0:
+        return nothing
+    wi = towards * (1.0 / math.sqrt(distance_squared))
+    here = scattering_towards(scene, eye, wi, wavelengths, eye_survival, None)
+    if here.is_black:
+        return nothing
+    there = scattering_towards(scene, light.vertex, -wi, wavelengths, light_survival, True)
+    if there.is_black:
+        return nothing
+    if is_blocked(scene, eye.surface, wi, leave_surface(light.vertex.surface, -wi)):
+        return Connected(black(wavelengths), 1)
+    weight = weight_of_connection(
+        counts,
+        here.pdf_fwd * there.cos_theta / distance_squared,
+        bracket(counts, light.partial, there.pdf_rev),
+        there.pdf_fwd * here.cos_theta / distance_squared,
+        bracket(counts, eye_partial, here.pdf_rev),
+    )
+    value = light.throughput * here.f_cos * there.f_cos * (weight / (counts.vc * distance_squared))
+    return Connected(value, 1)
+
+
+@function
+def connect_to_camera(scene, counts, vertex, partial, survival, sensor, wavelengths):
+    """A light vertex joined with the lens, with its weight (1.16); pixel value per light throughput and light path."""
+    nothing = no_connection(wavelengths)
+    distance_squared = dot(sensor.towards, sensor.towards)
+    wi = sensor.towards * (1.0 / math.sqrt(distance_squared))
+    there = scattering_towards(scene, vertex, wi, wavelengths, survival, True)
+    if there.is_black:
+        return nothing
+    if is_blocked(scene, vertex.surface, wi, sensor.position):
+        return Connected(black(wavelengths), 1)
+    camera_density = sensor.pdf_solid_angle * there.cos_theta / distance_squared
+    weight = weight_of_light_image(counts, camera_density, bracket(counts, partial, there.pdf_rev))
+    return Connected(there.f_cos * (weight * sensor.importance / distance_squared), 1)

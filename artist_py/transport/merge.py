@@ -1,0 +1,111 @@
+"""Vertex merging: light vertices within a radius of an eye vertex (Georgiev et al. 2012; Hachisuka et al. 2012)."""
+
+from typing import NamedTuple
+
+from ..bsdf.dispatch import evaluate_bsdf, pdf_bsdf
+from ..core.affine import load_vec3
+from ..core.frame import to_local
+from ..core.spectra import black
+from ..core.vector import Spectrum, dot
+from ..jit import function
+from .mis import Partial, bracket, weight_of_merge
+from .photon_grid import bucket_of, cell_of, is_in_cell
+from .subpath import is_on_side
+from .vertices import load_throughput
+
+
+class Merging(NamedTuple):
+    """Constants of an iteration's merges."""
+
+    radius: float  # render-space units
+    normalization: float  # 1 / (pi r^2 N_L)
+    # Photons on surfaces that face elsewhere are not of this surface: they would leak through edges and thin walls.
+    min_normal_cosine: float
+    epanechnikov: bool | None  # K = 2 (1 - d^2 / r^2) / (pi r^2) instead of the constant kernel 1 / (pi r^2)
+
+
+class Merged(NamedTuple):
+    """What the photons around a vertex bring per eye throughput, and how many there were."""
+
+    value: Spectrum
+    count: int
+
+
+@function
+def merge_at(scene, method, grid, merging, stored, survival, limits, wavelengths):
+    """Sum over the photons within the radius of the stored eye vertex, each with its weight (1.14)."""
+    total, count = black(wavelengths), 0
+    p = stored.vertex.surface.position
+    i, j, k = _lower_cell(p.x, grid.cell), _lower_cell(p.y, grid.cell), _lower_cell(p.z, grid.cell)
+    buckets = grid.starts.shape[0] - 1
+    scale = 1.0 / (merging.radius * merging.radius)
+    for corner in range(8):
+        x, y, z = i + (corner & 1), j + ((corner >> 1) & 1), k + (corner >> 2)
+        bucket = bucket_of(x, y, z, buckets)
+        for row in range(grid.starts[bucket], grid.starts[bucket + 1]):
+            photon = grid.photons[row]
+            distance_squared = _distance_squared(photon, p) * scale
+            # A photon counts in its own cell only, since several of the eight may share a bucket.
+            if distance_squared <= 1.0 and is_in_cell(photon.position, x, y, z, grid.cell):
+                if photon.length + stored.length <= limits.max_length:
+                    value = _merge(scene, method, merging, photon, stored, survival, wavelengths)
+                    total = total + value * _kernel(merging.epanechnikov, distance_squared)
+                    count += 1
+    return Merged(total * merging.normalization, count)
+
+
+@function
+def _lower_cell(x, cell):
+    """The lower of the two cells that a ball of half a cell's size around `x` can touch."""
+    return cell_of(x - 0.5 * cell, cell)
+
+
+@function
+def _distance_squared(photon, p):
+    dx, dy, dz = photon.position[0] - p.x, photon.position[1] - p.y, photon.position[2] - p.z
+    return dx * dx + dy * dy + dz * dz
+
+
+@function
+def _kernel(epanechnikov, distance_squared):
+    """The kernel over 1 / (pi r^2), at a distance in radii; weights keep the area pi r^2 for either (theory 1.2)."""
+    if epanechnikov is None:
+        return 1.0
+    return 2.0 * (1.0 - distance_squared)
+
+
+@function
+def _merge(scene, method, merging, photon, stored, survival, wavelengths):
+    vertex = stored.vertex
+    normal = load_vec3(photon.normal)
+    direction = load_vec3(photon.direction)
+    wi = to_local(vertex.frame, direction)
+    material = scene.materials[vertex.surface.material]
+    pdf = pdf_bsdf(scene.needs, material, vertex.wo, wi)
+    if pdf == 0.0 or abs(dot(normal, vertex.surface.normal)) < merging.min_normal_cosine:
+        return black(wavelengths)
+    if not is_on_side(scene.needs.smooth_triangles, vertex.surface, direction, wi):
+        return black(wavelengths)
+    f = evaluate_bsdf(scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, vertex.wo, wi)
+    weight = _weight(method.techniques.merge_once, scene, method, photon, stored, material, wi, pdf, survival)
+    shading = _shading_factor(scene.needs.smooth_triangles, normal, direction, wi)
+    return load_throughput(photon, wavelengths) * f * (weight * shading)
+
+
+@function
+def _weight(merge_once, scene, method, photon, stored, material, wi, pdf, survival):
+    """(1.14), or 1 where merging is the only technique."""
+    if merge_once is not None:
+        return 1.0
+    pdf_rev = pdf_bsdf(scene.needs, material, wi, stored.vertex.wo) * survival
+    light = bracket(method.counts, Partial(photon.c, photon.e), pdf * survival)
+    eye = bracket(method.counts, stored.partial, pdf_rev)
+    return weight_of_merge(method.counts, light, eye)
+
+
+@function
+def _shading_factor(smooth, normal, direction, wi):
+    """|wi.Ns| / |wi.Ng|: the photon's flux was counted on the geometric surface (theory 1.7)."""
+    if smooth is None:
+        return 1.0
+    return abs(wi.z) / max(abs(dot(normal, direction)), 1e-9)

@@ -1,0 +1,142 @@
+"""Vertices that outlive their subpath: where they are stored, and how they are read again.
+
+Records come from one pool. Threads take it chunk by chunk; a path whose vertices might not fit is not begun, the pool
+is enlarged and the path traced then, so that no vertex is ever dropped. Which chunk a path lies in depends on threads,
+the order of paths does not: whoever reads the pool goes by path.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..core.affine import load_vec3
+from ..core.atomic import fetch_and_add
+from ..core.table import Table
+from ..core.vector import Spectrum, Vec3, lane, lane_count, with_lane
+from ..geometry.surface import Surface
+from ..jit import function
+from .mis import Partial
+from .subpath import Vertex, vertex_on
+
+CHUNK = 4096  # records that a thread takes at a time
+NEXT_CHUNK, SHORTAGE = range(2)  # in Pool.state
+
+
+def vertex_dtype(lanes):
+    """Layout of a stored vertex of a subpath with `lanes` wavelengths."""
+    return np.dtype(
+        [
+            ("position", "f8", 3),
+            ("normal", "f4", 3),  # geometric
+            ("shading_normal", "f4", 3),
+            ("direction", "f4", 3),  # unit, back along the subpath
+            ("throughput", "f4", lanes),  # as it arrives
+            ("u", "f4"),
+            ("v", "f4"),
+            ("c", "f8"),  # see mis.py, on arrival
+            ("e", "f8"),
+            ("extent", "f4"),
+            ("material", "i4"),
+            ("length", "i4"),  # edges of the subpath up to here
+            ("pixel", "i4"),  # eye vertices: row-major in the window
+        ],
+        align=True,
+    )
+
+
+class Pool(NamedTuple):
+    """Vertex records and who has them."""
+
+    records: Table  # vertex_dtype, a multiple of CHUNK rows
+    state: Table  # int64: next free chunk, whether records have run short
+    ends: Table  # int64 (threads, 2): next free record and end of each thread's chunk
+    used: Table  # int32 (chunks,): how many records of each chunk hold something
+
+
+@function
+def has_room(pool, thread, count):
+    """Whether `thread` may store `count` <= CHUNK records in a row; takes a new chunk where its own is too full."""
+    if pool is None:
+        return True
+    if pool.ends[thread, 0] + count <= pool.ends[thread, 1]:
+        return True
+    chunk = fetch_and_add(pool.state, NEXT_CHUNK, 1)
+    if (chunk + 1) * CHUNK > pool.records.shape[0]:
+        fetch_and_add(pool.state, NEXT_CHUNK, -1)
+        pool.state[SHORTAGE] = 1
+        return False
+    pool.ends[thread, 0] = chunk * CHUNK
+    pool.ends[thread, 1] = (chunk + 1) * CHUNK
+    return True
+
+
+@function
+def store3(field, v):
+    """Write a vector to the three numbers of a record's field."""
+    field[0] = v.x
+    field[1] = v.y
+    field[2] = v.z
+
+
+@function
+def store_vertex(pool, thread, surface, direction, throughput, partial, length, pixel):
+    """Append a vertex; `direction` points back along the subpath. Room has been made sure of."""
+    row = pool.ends[thread, 0]
+    pool.ends[thread, 0] = row + 1
+    pool.used[row // CHUNK] = row % CHUNK + 1
+    record = pool.records[row]
+    store3(record.position, surface.position)
+    store3(record.normal, surface.normal)
+    store3(record.shading_normal, surface.shading_normal)
+    store3(record.direction, direction)
+    for i in range(lane_count(throughput)):
+        record.throughput[i] = lane(throughput, i)
+    record.c = partial.c
+    record.e = partial.e
+    record.u = surface.u
+    record.v = surface.v
+    record.extent = surface.extent
+    record.material = surface.material
+    record.length = length
+    record.pixel = pixel
+
+
+class StoredVertex(NamedTuple):
+    """A vertex as it was stored."""
+
+    vertex: Vertex
+    direction: Vec3
+    throughput: Spectrum
+    partial: Partial
+    length: int
+
+
+@function
+def load_vertex(scene, record, zero, wavelengths):
+    """The `StoredVertex` of a record, of a subpath with these `wavelengths`; `zero` has as many."""
+    normal = load_vec3(record.normal)
+    shading = load_vec3(record.shading_normal)
+    direction = load_vec3(record.direction)
+    surface = Surface(
+        load_vec3(record.position),
+        normal,
+        shading,
+        float(record.u),
+        float(record.v),
+        float(record.extent),
+        record.material,
+        -1,
+    )
+    vertex = vertex_on(scene, surface, direction, wavelengths)
+    return StoredVertex(
+        vertex, direction, load_throughput(record, zero), Partial(record.c, record.e), record.length
+    )
+
+
+@function
+def load_throughput(record, zero):
+    """The throughput of a record."""
+    throughput = zero
+    for i in range(lane_count(zero)):
+        throughput = with_lane(throughput, i, record.throughput[i])
+    return throughput

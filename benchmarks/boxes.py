@@ -1,0 +1,111 @@
+"""Error against CPU seconds of the bidirectional methods on the two reference boxes, and pairs of subpaths per CPU second.
+
+    python -m benchmarks.boxes REFERENCES [--integrators pt,bpt,ppm,vcm] [--seconds 5,10,20,40] [--boxes 1,4] [--size 512]
+
+REFERENCES is a folder with box_s1.npz and box_s4.npz: 256 x 256 linear RGB, keys "vcm" and "bpt", path length up to 10.
+They were rendered in RGB. So are ours here: the scene is compiled over four bins of 1 nm that stand for R, G, B and
+nothing, and each of the four shared wavelengths of an iteration falls into one of them.
+"""
+
+import argparse
+import json
+import time
+from pathlib import Path
+
+import numpy as np
+
+import artist_py
+from artist_py.core.table import Table
+from artist_py.film.accumulation import Film
+from artist_py.samplers.render_job import RenderSettings, Silence, sampler_for
+from artist_py.scene.spectrum_types import Rgb
+
+SCENES = {"1": "box_glossy.toml", "4": "box_spheres.toml"}
+FIRST_NM = 550
+FOLDER = Path(__file__).parent
+
+
+def rgb_scene(name, integrator, size):
+    """The compiled box, its four bins of wavelength turned into the channels R, G, B and nothing."""
+    compiled = artist_py.load_scene(
+        FOLDER.parent / "scenes" / name,
+        {
+            "render.integrator": integrator,
+            "render.wavelengths": "shared",
+            "render.wavelength_range": [FIRST_NM, FIRST_NM + 4],
+            "film.resolution": [size, size],
+        },
+    )
+    spectra, materials = compiled.spectra, compiled.scene.materials.array
+    spectra[:3] = np.eye(4)[:3]
+    used = [name for name in compiled.graph.materials if _is_used(compiled, name)]
+    for row, name in zip(materials[1:], used, strict=True):
+        reflectance = getattr(compiled.graph.materials[name], "reflectance", None)
+        if isinstance(reflectance, Rgb):
+            spectra[row["reflectance"], :3] = reflectance.rgb
+    compiled.nodes[:] = np.linspace(FIRST_NM, FIRST_NM + 4, len(compiled.nodes))
+    compiled.scene = compiled.scene._replace(spectra=compiled.scene.spectra._replace(dense=Table(spectra)))
+    return compiled
+
+
+def _is_used(compiled, name):
+    return any(shape.material == name for shape in compiled.graph.shapes)
+
+
+def relative_mse(image, reference):
+    """mean((I - R)^2 / (R^2 + 0.001)) (Sriwasansak et al. 2018)."""
+    return float(np.mean((image - reference) ** 2 / (reference**2 + 0.001)))
+
+
+def halved(image):
+    """Means of 2 x 2 pixels."""
+    height, width, channels = image.shape
+    return image.reshape(height // 2, 2, width // 2, 2, channels).mean(axis=(1, 3))
+
+
+def measure(box, integrator, references, seconds, size):
+    """Rows of one method on one box: CPU seconds, iterations, relMSE against the mean of both references."""
+    compiled = rgb_scene(SCENES[box], integrator, size)
+    reference = 0.5 * (references["vcm"] + references["bpt"]).astype(float)
+    film = Film(size, size)
+    rows, spent = [], 0.0
+    with sampler_for(compiled, film, RenderSettings(threads=1), Silence()) as sampler:
+        sampler.compile_kernels(Silence())
+        for limit in seconds:
+            while spent < limit:
+                begun = time.process_time()
+                sampler.iterate(film.iterations)
+                spent += time.process_time() - begun
+            image = film.mean()
+            error = relative_mse(halved(image) if size == 512 else image, reference)
+            rows.append({"cpu_seconds": spent, "iterations": film.iterations, "relmse": error})
+    rate = film.iterations * size * size / spent
+    mean = film.mean().mean(axis=(0, 1)).tolist()
+    return {"box": box, "integrator": integrator, "pairs_per_cpu_second": rate, "mean": mean, "rows": rows}
+
+
+def main():
+    """Measure, print a table, write benchmarks/results/boxes.json."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("references", type=Path)
+    parser.add_argument("--integrators", default="pt,lt,bpt,ppm,vcm")
+    parser.add_argument("--seconds", default="5,10,20,40")
+    parser.add_argument("--boxes", default="1,4")
+    parser.add_argument("--size", type=int, default=512)
+    options = parser.parse_args()
+    seconds = [float(word) for word in options.seconds.split(",")]
+    results = []
+    for box in options.boxes.split(","):
+        references = np.load(options.references / f"box_s{box}.npz")
+        disagreement = relative_mse(references["vcm"].astype(float), references["bpt"].astype(float))
+        print(f"box {box}: the references' own disagreement is {disagreement:.4f}", flush=True)
+        for integrator in options.integrators.split(","):
+            result = measure(box, integrator, references, seconds, options.size)
+            results.append(result)
+            errors = ", ".join(f"{row['cpu_seconds']:.0f} s {row['relmse']:.4f}" for row in result["rows"])
+            print(f"  {integrator}: {result['pairs_per_cpu_second']:.0f} pairs / CPU s; relMSE {errors}", flush=True)
+    (FOLDER / "results" / "boxes.json").write_text(json.dumps(results, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()

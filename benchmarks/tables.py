@@ -1,0 +1,157 @@
+"""Tables in Markdown from results/*.json, for README.md here."""
+
+from .measure import HERE, load
+
+README = HERE / "README.md"
+BEGIN, END = "<!-- tables: begin; written by python -m benchmarks -->", "<!-- tables: end -->"
+MIB = 2**20
+
+
+def rewrite_readme():
+    """Replace what stands between the two marks of README.md."""
+    text = README.read_text(encoding="utf-8")
+    before, rest = text.split(BEGIN)
+    _, after = rest.split(END)
+    blocks = [block for block in (write() for write in WRITERS) if block]
+    README.write_text(f"{before}{BEGIN}\n{chr(10).join(blocks)}{END}{after}", encoding="utf-8")
+
+
+def table(title, results, header, rows):
+    """A section with one table, and the machine it is from."""
+    machine = results["machine"]
+    lines = [f"\n### {title}", "", f"| {' | '.join(header)} |", f"|{' --- |' * len(header)}"]
+    lines += [f"| {' | '.join(map(str, row))} |" for row in rows]
+    origin = f"{results['date']}, {machine['processor']}, {machine['processors']} processors"
+    return "\n".join([*lines, "", f"{origin}; load average at the end {machine['load_average']}.", ""])
+
+
+def speed():
+    """Rates, side by side."""
+    if not (results := load("speed")):
+        return None
+    rows = [
+        (
+            scene,
+            f"{label} {figures['version']}",
+            f"{figures['paths_per_cpu_second']['median'] / 1e3:.0f}",
+            f"{ratio['median']:.2f} ({ratio['lowest']:.2f} to {ratio['highest']:.2f})",
+            " ".join(f"{value:.4f}" for value in figures["mean_rgb"]),
+        )
+        for scene, each in results["scenes"].items()
+        for label, figures in each["renderers"].items()
+        for ratio in [figures["artist_over_this"]]
+    ]
+    header = (
+        "scene",
+        "renderer",
+        "thousand paths per CPU second",
+        "artist is faster by",
+        "mean radiance, RGB",
+    )
+    return table("Speed", results, header, rows)
+
+
+def embree_share():
+    """Nanoseconds per ray."""
+    if not (results := load("embree_share")):
+        return None
+    rows = [
+        (
+            scene,
+            f"{figures['render_ns_per_ray']['median']:.0f}",
+            f"{figures['embree_ns_per_ray']['median']:.0f}",
+            f"{figures['render_over_embree']['median']:.2f}",
+            results["target"],
+        )
+        for scene, figures in results["scenes"].items()
+    ]
+    header = ("scene", "render, ns per ray", "Embree alone, ns per ray", "ratio", "at most")
+    return table("Share of Embree", results, header, rows)
+
+
+def start_up():
+    """Seconds to wait."""
+    if not (results := load("start_up")):
+        return None
+    targets = results["targets"]
+    rows = [("`artist --help`", f"{results['help_seconds']['median']:.2f}", targets["help_seconds"])]
+    for name, what in (("warm", "first sample, kernels cached"), ("cold", "first sample, kernels compiled")):
+        key = f"first_sample_{name}_seconds"
+        rows += [
+            (f"{what}: {scene}", f"{figures[key]['median']:.2f}", targets[key])
+            for scene, figures in results["scenes"].items()
+        ]
+    return table("Start", results, ("what", "seconds", "at most"), rows)
+
+
+def memory():
+    """MiB."""
+    if not (results := load("memory")):
+        return None
+    limit = f"{results['target_bytes'] / MIB:.0f}"
+    rows = [
+        (scene, f"{peaks['cached'] / MIB:.0f}", f"{peaks['compiling'] / MIB:.0f}", limit)
+        for scene, peaks in results["peak_bytes"].items()
+    ]
+    return table("Peak memory", results, ("scene", "MiB", "MiB when compiling", "at most"), rows)
+
+
+def threads():
+    """Speed-up."""
+    if not (results := load("threads")):
+        return None
+    rows = [
+        (
+            scene,
+            f"{figures['speed_up']['median']:.2f} (best {figures['speed_up']['highest']:.2f})",
+            f"{figures['cpu_time_of_two_over_one']['median']:.2f}",
+            results["target"],
+        )
+        for scene, figures in results["scenes"].items()
+    ]
+    header = ("scene", "two threads are faster by", "CPU time of two over that of one", "at least")
+    return table("Threads", results, header, rows)
+
+
+def triangles():
+    """Growth."""
+    if not (results := load("triangles")):
+        return None
+    rows = [
+        (
+            f"{each['triangles']:,}".replace(",", " "),
+            f"{each['load_and_build_seconds']:.2f}",
+            f"{each['cpu_ns_per_ray']:.0f}",
+            f"{each['paths_per_cpu_second'] / 1e3:.0f}",
+            f"{each['peak_bytes'] / MIB:.0f}",
+        )
+        for each in results["sizes"]
+    ]
+    header = ("triangles", "load and build, s", "ns per ray", "thousand paths per CPU second", "peak MiB")
+    return table("Growth with triangles", results, header, rows)
+
+
+def samplers():
+    """Errors at equal count and at equal time."""
+    if not (results := load("samplers")):
+        return None
+    counts = [str(count) for count in results["iterations"]]
+    parts = []
+    for key, what in (("stratified_pairs", "stratified pairs"), ("wavelengths", "wavelengths")):
+        rows = [
+            (
+                scene,
+                name,
+                *(f"{1e3 * figures[count]['relmse']:.2f}" for count in counts),
+                f"{figures[counts[-1]]['cpu_seconds']:.2f}",
+                f"{1e3 * figures[counts[-1]]['relmse_times_cpu_seconds']:.1f}",
+            )
+            for scene, each in results["scenes"].items()
+            for name, figures in each[key].items()
+        ]
+        header = ("scene", what, *(f"1000 relMSE, {n} paths" for n in counts), "CPU s", "1000 relMSE x CPU s")
+        parts.append(table(f"Error by {what}", results, header, rows))
+    return "\n".join(parts)
+
+
+WRITERS = (speed, embree_share, start_up, memory, threads, triangles, samplers)

@@ -4,6 +4,7 @@ import argparse
 import importlib
 import os
 
+from .summary import summary
 from .tables import rewrite_readme
 
 BENCHMARKS = ("speed", "embree_share", "start_up", "memory", "threads", "triangles", "samplers")
@@ -12,6 +13,9 @@ BENCHMARKS = ("speed", "embree_share", "start_up", "memory", "threads", "triangl
 def main():
     """Run what was asked for, by default everything."""
     options = parse()
+    if options.summary:
+        print(summary())
+        return
     processors = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else None
     for name in options.names if options.names is not None else BENCHMARKS:
         print(name, flush=True)
@@ -30,6 +34,7 @@ def parse():
     parser.add_argument(
         "--tables", action="store_true", help="only rewrite the tables from the results there are"
     )
+    parser.add_argument("--summary", action="store_true", help="only print the table of the project's README")
     parser.add_argument(
         "--quick", action="store_true", help="fewer repeats and smaller sizes: to try the scripts"
     )

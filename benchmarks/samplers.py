@@ -14,7 +14,7 @@ from .measure import SCENES, on_one_processor, save
 
 NAMES = ("cornell_box", "glass_sphere")
 COUNTS = (16, 64, 256)
-STRATIFIED_PAIRS = (0, 3, 6, 12, 24, 48)
+STRATIFIED_PAIRS = (0, 3, 6, 9, 12, 24, 48)
 WAVELENGTHS = tuple((mode, count) for mode in ("independent", "shared") for count in (1, 4, 8))
 SIZE = 128
 REFERENCE_ITERATIONS, REFERENCE_SEED = 8192, 4711

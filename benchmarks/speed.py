@@ -12,7 +12,8 @@ from .measure import HERE, SCENES, Renderer, artist_renderer, median_and_spread,
 from .mitsuba_scene import mitsuba_scene
 
 NAMES = ("cornell_box", "glass_sphere")
-VARIANTS = ("scalar_spectral", "llvm_ad_spectral")
+# Mitsuba's variants, and whether Embree's intersections are watertight ("robust"), as ours always are.
+VARIANTS = (("scalar_spectral", False), ("llvm_ad_spectral", False), ("llvm_ad_spectral", True))
 OLDEST_LLVM = 17  # Dr.Jit starts with 15, but 15 and 16 abort on f32 minima with AVX-512
 
 
@@ -29,16 +30,17 @@ def measure_scene(name, python, repeats, iterations):
     path = SCENES / f"{name}.toml"
     with ExitStack() as stack:
         renderers = {"artist": stack.enter_context(artist_renderer(path))}
-        for variant in VARIANTS:
-            child = mitsuba_renderer(python, variant, path)
+        for variant, is_robust in VARIANTS:
+            child = mitsuba_renderer(python, variant, path, is_robust)
             if child:
-                renderers[f"mitsuba {variant}"] = stack.enter_context(child)
+                label = f"mitsuba {variant}{' robust' if is_robust else ''}"
+                renderers[label] = stack.enter_context(child)
         answers = interleave(renderers, repeats, iterations)
         versions = {label: renderer.version for label, renderer in renderers.items()}
     return {"renderers": summarise(answers, versions)}
 
 
-def mitsuba_renderer(python, variant, path):
+def mitsuba_renderer(python, variant, path, is_robust):
     """A `Renderer` that runs Mitsuba, or `None` where that is not installed."""
     environment = {}
     if variant.startswith("llvm"):
@@ -52,7 +54,8 @@ def mitsuba_renderer(python, variant, path):
             f"{variant}: left out, {python} has no mitsuba: install the extra, or name another --mitsuba-python"
         )
         return None
-    return Renderer([python, str(HERE / "renderer_mitsuba.py"), variant], mitsuba_scene(path), environment)
+    scene = {**mitsuba_scene(path), "embree_use_robust_intersections": is_robust}
+    return Renderer([python, str(HERE / "renderer_mitsuba.py"), variant], scene, environment)
 
 
 def newest_llvm():
@@ -73,7 +76,7 @@ def interleave(renderers, repeats, iterations):
             if seed:
                 answers[label].append(answer)
                 rate = answer["paths"] / answer["cpu_seconds"]
-                print(f"  {label:26} {rate / 1e3:8.0f} thousand paths per CPU second", flush=True)
+                print(f"  {label:32} {rate / 1e3:8.0f} thousand paths per CPU second", flush=True)
     return answers
 
 

@@ -35,11 +35,14 @@ def sample_film(pixel_filter, x, y, u, v):
 
 @function
 def camera_ray(camera, film_x, film_y, u, v):
-    """`(origin, unit direction)` through a film point in pixels, row 0 on top."""
+    """`(point on the lens, origin, unit direction)` through a film point in pixels, row 0 on top.
+
+    The ray's origin is the point on the lens, or nearer to the scene where the camera is far from it.
+    """
     direction = camera.corner + camera.right * film_x + camera.down * film_y
-    origin, direction = through_lens(camera.lens, camera, direction, u, v)
+    lens_point, direction = through_lens(camera.lens, camera, direction, u, v)
     direction = normalize(direction)
-    return _start_at_sphere(camera.clip, origin, direction), direction
+    return lens_point, _start_at_sphere(camera.clip, lens_point, direction), direction
 
 
 @function

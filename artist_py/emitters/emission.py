@@ -10,24 +10,18 @@ from ..core.warp import INV_PI, square_to_cosine_hemisphere, square_to_sphere, s
 from ..geometry.quadrics import pdf_quadric_area, sample_quadric
 from ..geometry.surface import extent_of
 from ..jit import function
-from ..scene.tables import PARALLELOGRAM_EMITTER, QUADRIC_EMITTER, SPHERE_EMITTER
+from ..scene.tables import (
+    DIRECTIONAL_EMITTER,
+    PARALLELOGRAM_EMITTER,
+    POINT_EMITTER,
+    QUADRIC_EMITTER,
+    SPHERE_EMITTER,
+    SPOT_EMITTER,
+)
 from .dispatch import pdf_emitter
-
-
-class Emission(NamedTuple):
-    """The start of a light subpath, and what weights need to know of it (theory 1.5).
-
-    `density` is p>_0 s>_0 with the choice of the emitter: of position and direction together, or of direction and
-    place on the disk for emitters at infinity.
-    """
-
-    position: Vec3
-    normal: Vec3  # unit, on the side of `direction`
-    direction: Vec3  # unit
-    density: float
-    cos_theta: float  # of `direction` with `normal`; 1 where there is no surface
-    can_be_hit: float  # 1, or 0 for emitters that eye subpaths cannot hit
-    extent: float
+from .infinite import emit_from_infinity, pdf_towards
+from .point import emit_from_point, emit_from_spot, pdf_direction_of_point
+from .types import Emission
 
 
 class _Spot(NamedTuple):
@@ -38,7 +32,27 @@ class _Spot(NamedTuple):
 
 
 @function
-def sample_emission(needs, geometry, emitter, u, v, u_direction, v_direction):
+def sample_emission(scene, emitter, u, v, u_direction, v_direction):
+    """A start on `emitter`: (u, v) choose the place, the others the direction; `Emission`."""
+    needed = scene.needs.surfaceless_emitters
+    return _sample(needed, scene, emitter, u, v, u_direction, v_direction)
+
+
+@function
+def _sample(needed, scene, emitter, u, v, u_direction, v_direction):
+    if needed is None:
+        return _emit_from_surface(scene.needs, scene.geometry, emitter, u, v, u_direction, v_direction)
+    if emitter.kind >= DIRECTIONAL_EMITTER:
+        return emit_from_infinity(scene, emitter, u, v, u_direction, v_direction)
+    if emitter.kind == SPOT_EMITTER:
+        return emit_from_spot(scene.needs.spot_emitters, emitter, u_direction, v_direction)
+    if emitter.kind == POINT_EMITTER:
+        return emit_from_point(scene.needs.point_emitters, emitter, u_direction, v_direction)
+    return _emit_from_surface(scene.needs, scene.geometry, emitter, u, v, u_direction, v_direction)
+
+
+@function
+def _emit_from_surface(needs, geometry, emitter, u, v, u_direction, v_direction):
     """A point on `emitter`, uniform by area, and a direction with density cos / pi on each emitting side."""
     spot = _spot(needs, geometry, emitter, u, v)
     side = 1.0
@@ -48,14 +62,14 @@ def sample_emission(needs, geometry, emitter, u, v, u_direction, v_direction):
     normal = spot.normal * side
     local = square_to_cosine_hemisphere(u_direction, v_direction)
     direction = to_world(frame_around(normal), local)
-    density = spot.pdf_area * emitter.pdf_select * pdf_emitted_direction(emitter, local.z)
+    density = spot.pdf_area * emitter.pdf_select * _pdf_direction(emitter, local.z)
     return Emission(spot.position, normal, direction, density, local.z, 1.0, spot.extent)
 
 
 @function
-def next_event_over_emission(needs, geometry, emitter, start, position, distance_squared):
+def next_event_over_emission(scene, emitter, start, position):
     """pc_0 / (p>_0 p>_1) without the cosine at the first vertex, which stands at `position`: C_1 of (1.5) times it."""
-    density = pdf_emitter(needs, geometry, emitter, position, start.position, start.normal)
+    density = pdf_emitter(scene, emitter, position, start.position, start.normal)
     return density * start.cos_theta / start.density
 
 
@@ -66,26 +80,49 @@ def hit_over_emission(start):
 
 
 @function
-def emission_over_next_event(needs, geometry, emitter, point, towards, pdf_light):
+def emission_over_next_event(scene, emitter, point, towards, pdf_light):
     """p>_0 p>_1 / pc_0 without the cosine at the first vertex, for a point that next-event estimation has found.
 
     `towards` leads from the vertex to the point, `pdf_light` is pc_0 as a density at the vertex, sr^-1.
     """
+    needed = scene.needs.surfaceless_emitters
+    return _over_next_event(needed, scene, emitter, point, towards, pdf_light)
+
+
+@function
+def _over_next_event(needed, scene, emitter, point, towards, pdf_light):
+    if needed is None:
+        return _surface_over_next_event(scene, emitter, point, towards, pdf_light)
+    if emitter.kind >= DIRECTIONAL_EMITTER:
+        return 1.0 / emitter.area  # the densities of the direction are the same
+    if emitter.kind >= POINT_EMITTER:
+        return emitter.pdf_select * pdf_direction_of_point(emitter) / pdf_light
+    return _surface_over_next_event(scene, emitter, point, towards, pdf_light)
+
+
+@function
+def _surface_over_next_event(scene, emitter, point, towards, pdf_light):
     cos_light = cos_between(point.normal, towards)
-    emission = pdf_emission_position(needs, geometry, emitter, point.position)
-    return emission * pdf_emitted_direction(emitter, cos_light) / (pdf_light * cos_light)
+    emission = _pdf_position(scene.needs, scene.geometry, emitter, point.position)
+    return emission * _pdf_direction(emitter, cos_light) / (pdf_light * cos_light)
 
 
 @function
-def pdf_emission_of_hit(needs, geometry, emitter, surface, direction):
+def pdf_emission_of_hit(scene, emitter, surface, direction):
     """p>_0 s>_0 of (1.17): how light subpaths would have begun where an eye subpath has hit the emitter."""
-    position = pdf_emission_position(needs, geometry, emitter, surface.position)
-    return position * pdf_emitted_direction(emitter, dot(direction, surface.normal))
+    position = _pdf_position(scene.needs, scene.geometry, emitter, surface.position)
+    return position * _pdf_direction(emitter, dot(direction, surface.normal))
 
 
 @function
-def pdf_emitted_direction(emitter, cos_theta):
-    """Density of `sample_emission` at a direction of this cosine with the normal, sr^-1."""
+def pdf_emission_of_background(scene, emitter, towards):
+    """p>_0 e of (1.17) for a sun or an environment that an eye subpath has found in the direction `towards`."""
+    return pdf_towards(scene, emitter, towards) * emitter.pdf_select / emitter.area
+
+
+@function
+def _pdf_direction(emitter, cos_theta):
+    """Density of directions from a surface at a direction of this cosine with the normal, sr^-1."""
     return abs(cos_theta) * INV_PI * (0.5 if emitter.two_sided != 0 else 1.0)
 
 
@@ -140,8 +177,8 @@ def cos_between(normal, towards):
 
 
 @function
-def pdf_emission_position(needs, geometry, emitter, position):
-    """Density of `sample_emission` at `position` of the emitter, per area, with the choice of the emitter."""
+def _pdf_position(needs, geometry, emitter, position):
+    """Density of starts at `position` of a surface, per area, with the choice of the emitter."""
     return _pdf_area(needs.quadric_emitters, geometry, emitter, position) * emitter.pdf_select
 
 

@@ -11,7 +11,7 @@ from ..core.spectra import black
 from ..jit import function, kernel
 from ..transport.mis import Partial
 from ..transport.sensing import store_sample, wavelengths_of_path
-from ..transport.subpath import start_path
+from ..transport.subpath import seen_from, start_path
 from ..transport.vertices import CHUNK, has_room
 from .eye_subpath import trace_eye_subpath
 from .light_subpath import trace_light_subpath
@@ -90,8 +90,8 @@ def trace_pair(setup, thread, x, y, image):
     u, v = random_pair(stream, FILM)
     film_x, film_y, film_weight = sample_film(setup.pixel_filter, x, y, u, v)
     lens_u, lens_v = lens_numbers(setup.camera.lens, stream)
-    origin, direction = camera_ray(setup.camera, film_x, film_y, lens_u, lens_v)
-    path = start_path(origin, direction, sensing, setup.camera.media)
+    lens_point, origin, direction = camera_ray(setup.camera, film_x, film_y, lens_u, lens_v)
+    path = seen_from(start_path(origin, direction, sensing, setup.camera.media), lens_point)
     density = pdf_camera_direction(setup.camera, setup.method.n_pixels, direction)
     partial = Partial(setup.method.counts.lt / density, 0.0)  # (1.11)
     eye = trace_eye_subpath(setup, thread, index, stream, wavelengths, path, partial, film_weight)

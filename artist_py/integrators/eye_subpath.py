@@ -6,8 +6,9 @@ from ..bsdf.dispatch import is_delta_bsdf
 from ..core.rng import random_number, random_pair
 from ..core.spectra import black
 from ..core.vector import dot
-from ..emitters.dispatch import emitted_radiance, is_emitting_towards, pdf_emitter
-from ..emitters.emission import pdf_emission_of_hit
+from ..emitters.dispatch import emitted_radiance, is_emitting_towards, is_hidden, pdf_emitter
+from ..emitters.emission import pdf_emission_of_background, pdf_emission_of_hit
+from ..emitters.infinite import is_in_background
 from ..geometry.embree import INVALID_ID, closest_hit
 from ..geometry.surface import surface_at
 from ..jit import function
@@ -30,15 +31,18 @@ def trace_eye_subpath(setup, thread, index, stream, wavelengths, path, partial, 
     while True:
         rays += 1
         hit = closest_hit(scene.geometry.embree, path.origin, path.direction, np.inf)
+        is_only_way = is_found_by_hits_only(method.techniques, length, is_specular, begins_specular)
         if hit.geometry == INVALID_ID:
+            # Before (1.20): there is nothing to arrive at.
+            background = background_hit(scene, method, path, length, partial, is_only_way, wavelengths)
+            radiance = radiance + path.throughput * background
             break
         surface = surface_at(scene.geometry, scene.needs, path.origin, path.direction, hit)
         material = scene.materials[surface.material]
         way = surface.position - path.reference
         cos_in = abs(dot(path.direction, surface.normal))
         arrived = on_arrival(partial, dot(way, way), cos_in)
-        is_only_way = is_found_by_hits_only(method.techniques, length, is_specular, begins_specular)
-        emitted = emission_hit(scene, method, surface, path, arrived, is_only_way, wavelengths)
+        emitted = emission_hit(scene, method, surface, path, length, arrived, is_only_way, wavelengths)
         radiance = radiance + path.throughput * emitted
         if is_passed_through(scene, surface, material, path):
             path = go_straight(scene, surface, material, path)
@@ -157,13 +161,15 @@ def is_found_by_hits_only(techniques, length, is_specular, begins_specular):
 
 
 @function
-def emission_hit(scene, method, surface, path, partial, is_only_way, wavelengths):
+def emission_hit(scene, method, surface, path, length, partial, is_only_way, wavelengths):
     """Radiance of an emitter that was hit, with its weight (1.17)."""
-    return _emission_hit(scene.emitters, scene, method, surface, path, partial, is_only_way, wavelengths)
+    return _emission_hit(
+        scene.emitters, scene, method, surface, path, length, partial, is_only_way, wavelengths
+    )
 
 
 @function
-def _emission_hit(emitters, scene, method, surface, path, partial, is_only_way, wavelengths):
+def _emission_hit(emitters, scene, method, surface, path, length, partial, is_only_way, wavelengths):
     if emitters is None:
         return black(wavelengths)
     if surface.emitter < 0:
@@ -171,15 +177,57 @@ def _emission_hit(emitters, scene, method, surface, path, partial, is_only_way, 
     emitter = emitters.records[surface.emitter]
     if not is_emitting_towards(emitter, surface.normal, -path.direction):
         return black(wavelengths)
-    radiance = emitted_radiance(scene.spectra, emitter, wavelengths)
+    if is_hidden(scene.needs.hidden_emitters, emitter, length):
+        return black(wavelengths)
+    radiance = emitted_radiance(scene, emitter, -path.direction, wavelengths)
     if not method.hits_everything:
         return radiance * (1.0 if is_only_way else 0.0)
     nee_ratio = 0.0
     if path.pdf_solid_angle > 0.0:
         reference = path.reference
-        density = pdf_emitter(
-            scene.needs, scene.geometry, emitter, reference, surface.position, surface.normal
-        )
-        nee_ratio = density / path.pdf_solid_angle
-    emission = pdf_emission_of_hit(scene.needs, scene.geometry, emitter, surface, path.direction)
+        nee_ratio = pdf_emitter(scene, emitter, reference, surface.position, surface.normal)
+        nee_ratio /= path.pdf_solid_angle
+    emission = pdf_emission_of_hit(scene, emitter, surface, path.direction)
     return radiance * weight_of_hit(method.counts, nee_ratio, emission, partial)
+
+
+@function
+def background_hit(scene, method, path, length, partial, is_only_way, wavelengths):
+    """Radiance that `path`, which leaves the scene, finds at infinity, with its weight (1.17)."""
+    return _background_hit(scene.emitters, scene, method, path, length, partial, is_only_way, wavelengths)
+
+
+@function
+def _background_hit(emitters, scene, method, path, length, partial, is_only_way, wavelengths):
+    if emitters is None:
+        return black(wavelengths)
+    return _sum_of_background(
+        emitters.background, emitters.records, scene, method, path, length, partial, is_only_way, wavelengths
+    )
+
+
+@function
+def _sum_of_background(first, records, scene, method, path, length, partial, is_only_way, wavelengths):
+    total = black(wavelengths)
+    if first is None:
+        return total
+    for i in range(first, records.shape[0]):
+        emitter = records[i]
+        if is_in_background(emitter, path.direction) and not is_hidden(
+            scene.needs.hidden_emitters, emitter, length
+        ):
+            weight = _background_weight(scene, method, emitter, path, partial, is_only_way)
+            total = total + emitted_radiance(scene, emitter, -path.direction, wavelengths) * weight
+    return total
+
+
+@function
+def _background_weight(scene, method, emitter, path, partial, is_only_way):
+    if not method.hits_everything:
+        return 1.0 if is_only_way else 0.0
+    nee_ratio = 0.0
+    if path.pdf_solid_angle > 0.0:
+        density = pdf_emitter(scene, emitter, path.reference, path.reference, -path.direction)
+        nee_ratio = density / path.pdf_solid_angle
+    emission = pdf_emission_of_background(scene, emitter, path.direction)
+    return weight_of_hit(method.counts, nee_ratio, emission, partial)

@@ -52,7 +52,7 @@ def _trace_pixel(scene, camera, pixel_filter, sensing, work, row, column, hits):
     u, v = random_pair(stream, FILM)
     film_x, film_y, _ = sample_film(pixel_filter, x, y, u, v)
     lens_u, lens_v = lens_numbers(camera.lens, stream)
-    origin, direction = camera_ray(camera, film_x, film_y, lens_u, lens_v)
+    _, origin, direction = camera_ray(camera, film_x, film_y, lens_u, lens_v)
     hit = closest_hit(scene.geometry.embree, origin, direction, np.inf)
     if hit.geometry == INVALID_ID:
         return

@@ -57,12 +57,11 @@ def _trace(needed, emitters, setup, thread, index, pixel, stream, wavelengths):
     emitter = emitters.records[choose_emitter(emitters.alias, random_number(stream, EMITTER_CHOICE))]
     u, v = random_pair(stream, 0)
     u_direction, v_direction = random_pair(stream, 1)
-    start = sample_emission(setup.scene.needs, setup.scene.geometry, emitter, u, v, u_direction, v_direction)
+    start = sample_emission(setup.scene, emitter, u, v, u_direction, v_direction)
     if not start.density > 0.0:
         return Walk(black(wavelengths), 0, 0)
-    throughput = emitted_radiance(setup.scene.spectra, emitter, wavelengths) * (
-        start.cos_theta / start.density
-    )
+    radiance = emitted_radiance(setup.scene, emitter, start.direction, wavelengths)
+    throughput = radiance * (start.cos_theta / start.density)
     origin = offset_position(start.position, start.normal, start.extent, start.direction)
     path = Path(
         origin, start.direction, throughput, 0.0, start.position, 1.0, setup.sensing.ratio, emitter.media, False
@@ -90,6 +89,8 @@ def _walk(setup, thread, index, stream, wavelengths, emitter, start, path):
         cos_in = abs(dot(path.direction, surface.normal))
         partial = _arrived(scene, emitter, start, path, surface, partial, length, cos_in)
         vertex = vertex_at(scene, surface, path, wavelengths)
+        if not vertex.is_sampled_back:  # no eye walk could go back there
+            break
         survival = local_survival(scene, vertex, wavelengths)
         pair = FIRST_VERTEX + (length - 1) * PAIRS_PER_VERTEX
         if not is_delta_bsdf(material):
@@ -116,9 +117,8 @@ def _arrived(scene, emitter, start, path, surface, partial, length, cos_in):
     distance_squared = dot(way, way)
     if length > 1:
         return on_arrival(partial, distance_squared, cos_in)
-    ratio = next_event_over_emission(
-        scene.needs, scene.geometry, emitter, start, surface.position, distance_squared
-    )
+    # For emitters at infinity the ratio has no square of the distance (theory 1.5), for others it holds it.
+    ratio = next_event_over_emission(scene, emitter, start, surface.position)
     return on_arrival(Partial(partial.c * ratio, partial.e), 1.0, cos_in)
 
 

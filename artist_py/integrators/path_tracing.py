@@ -15,7 +15,7 @@ from ..geometry.embree import INVALID_ID, closest_hit
 from ..geometry.surface import surface_at
 from ..jit import function, kernel
 from ..scene.tables import ABSORBER, Camera, Filter, Scene
-from ..transport.next_event import connect_to_emitter, radiance_of_hit
+from ..transport.next_event import connect_to_emitter, radiance_of_background, radiance_of_hit
 from ..transport.roulette import Limits, after_roulette, is_ended_by_roulette
 from ..transport.sensing import Sensing, store_sample, wavelengths_of_path
 from ..transport.subpath import go_straight, is_passed_through, scatter, start_path, vertex_at
@@ -78,7 +78,7 @@ def trace_pixel(scene, camera, pixel_filter, sensing, limits, work, x, y, image)
     u, v = random_pair(stream, FILM)
     film_x, film_y, film_weight = sample_film(pixel_filter, x, y, u, v)
     lens_u, lens_v = lens_numbers(camera.lens, stream)
-    origin, direction = camera_ray(camera, film_x, film_y, lens_u, lens_v)
+    _, origin, direction = camera_ray(camera, film_x, film_y, lens_u, lens_v)
     wavelengths, weights = wavelengths_of_path(sensing, stream, WAVELENGTH)
     traced = path_radiance(scene, limits, sensing, stream, wavelengths, origin, direction, camera.media)
     row, column = y - work.crop[2], x - work.crop[0]
@@ -129,9 +129,11 @@ def path_radiance(scene, limits, sensing, stream, wavelengths, origin, direction
         rays += 1
         hit = closest_hit(scene.geometry.embree, path.origin, path.direction, np.inf)
         if hit.geometry == INVALID_ID:
+            background = radiance_of_background(scene, path, length, wavelengths)
+            radiance = radiance + path.throughput * background
             break
         surface = surface_at(scene.geometry, scene.needs, path.origin, path.direction, hit)
-        radiance = radiance + path.throughput * radiance_of_hit(scene, surface, path, wavelengths)
+        radiance = radiance + path.throughput * radiance_of_hit(scene, surface, path, length, wavelengths)
         material = scene.materials[surface.material]
         if is_passed_through(scene, surface, material, path):
             path = go_straight(scene, surface, material, path)

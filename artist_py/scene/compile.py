@@ -15,6 +15,7 @@ from artist_py.scene import tables
 from artist_py.scene.compile_camera import camera_matrices, compile_camera, compile_filter
 from artist_py.scene.compile_emitters import EmitterCompiler
 from artist_py.scene.compile_geometry import GeometryCompiler, collect_parts, space_of
+from artist_py.scene.compile_lights import method_warnings
 from artist_py.scene.compile_materials import NEED_NAMES, MaterialCompiler, SpectrumRows
 from artist_py.scene.compile_textures import check_coordinates
 from artist_py.transport.initial_media import media_at
@@ -25,6 +26,11 @@ EMITTER_NEEDS = {
     tables.PARALLELOGRAM_EMITTER: "parallelogram_emitters",
     tables.SPHERE_EMITTER: "sphere_emitters",
     tables.QUADRIC_EMITTER: "quadric_emitters",
+    tables.POINT_EMITTER: "point_emitters",
+    tables.SPOT_EMITTER: "spot_emitters",
+    tables.DIRECTIONAL_EMITTER: "distant_emitters",
+    tables.SUN_EMITTER: "distant_emitters",
+    tables.ENVIRONMENT_EMITTER: "environments",
 }
 MANY_DIELECTRICS = 2000  # with more of them it is taken for granted that some touch
 
@@ -45,7 +51,7 @@ class CompiledScene:
     matrices: tuple
     embree: Any  # keeps the BVH alive
     warnings: list
-    images: list  # `ImageSummary` of each that textures use
+    texture_images: list  # `ImageSummary` of each that textures use
     reasons: dict = field(default_factory=dict)
     seconds: float = 0.0
 
@@ -93,6 +99,9 @@ def compile_scene(graph, threads=None):
     )
     camera = compile_camera(graph.camera, graph.film, space)
     scene, camera = _with_camera_media(scene, camera, materials)
+    if scene.needs.media and scene.emitters is not None:
+        emitters.place_in_media(scene)
+    geometry.warnings += method_warnings(graph.render.integrator, scene)
     nodes = inverse_cdf(wavelength_density(sensor, emitters.light), first)
     return CompiledScene(
         graph,
@@ -126,7 +135,7 @@ def _lights_and_materials(graph, geometry, spectra):
     problems, result = [], []
     used = {placed.material for placed in geometry.placed}
     for build in (
-        lambda: EmitterCompiler(geometry, spectra),
+        lambda: EmitterCompiler(geometry, spectra, graph.emitters),
         lambda: MaterialCompiler(graph, used, spectra),
         lambda: check_coordinates(graph, geometry.placed),
     ):
@@ -157,8 +166,12 @@ def _needs(graph, geometry, materials, emitters, media):
     kinds = {placed.part.kind for placed in geometry.placed}
     used = set(materials.table["kind"]) - {tables.ABSORBER}
     present = {NEED_NAMES[kind] for kind in used}
-    present |= {EMITTER_NEEDS[kind] for kind in set(emitters.records.array["kind"])} if emitters else set()
+    lights = emitters.records.array if emitters else np.zeros(0, tables.emitter_dtype)
+    present |= {EMITTER_NEEDS[kind] for kind in set(lights["kind"])}
     conditions = {
+        "surfaceless_emitters": bool((lights["kind"] >= tables.POINT_EMITTER).any()),
+        "environment_images": bool((lights["image"] >= 0).any()),
+        "hidden_emitters": bool((lights["visible"] == 0).any()),
         "dispersion": bool(materials.table["is_dispersive"].any()),
         "media": media is not None,
         "triangles": bool(kinds & {tables.TRIANGLES, tables.SMOOTH_TRIANGLES}),

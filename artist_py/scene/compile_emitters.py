@@ -1,4 +1,4 @@
-"""Emitting shapes to emitter records, their radiance, and the probabilities of choosing them."""
+"""Everything that emits to emitter records, and the probabilities of choosing them."""
 
 import math
 
@@ -6,20 +6,26 @@ import numpy as np
 
 from artist_py.core.alias_table import build_alias_table
 from artist_py.core.table import Table
+from artist_py.core.vector import vec3
+from artist_py.emitters.emission import sample_emission
 from artist_py.errors import SceneError
 from artist_py.geometry.quadric_records import quadric_area, quadric_records
+from artist_py.geometry.surface import offset_position
 from artist_py.scene import tables
+from artist_py.scene.compile_lights import LightCompiler
+from artist_py.scene.scales import POWER_RANGE, ratio
 from artist_py.scene.spectra import integrate, luminance, tabulate
 from artist_py.scene.where import problem
+from artist_py.transport.initial_media import media_at
 
-POWER_RANGE = 300, 780  # nm over which `power` is meant
 SIMILARITY_TOLERANCE = 1e-9
+ANYWHERE = vec3(0.36, 0.48, 0.8)  # along no axis, so that a ray is unlikely to follow an edge
 
 
 class EmitterCompiler:
-    """Collects the emitters of all placed shapes."""
+    """Collects the emitters of all placed shapes, then those without a shape."""
 
-    def __init__(self, geometry, spectra):
+    def __init__(self, geometry, spectra, lights=()):
         self.geometry, self.spectra = geometry, spectra
         self.records, self.powers, self.count = [], [], 0
         self.light = np.zeros(
@@ -29,6 +35,9 @@ class EmitterCompiler:
         for placed in geometry.placed:
             if placed.shape.emission is not None:
                 self._add(placed)
+        self.lights = LightCompiler(lights, geometry.space, spectra, geometry.warnings.append)
+        self.light += self.lights.light
+        self.problems += self.lights.problems
         if self.problems:
             raise SceneError(self.problems)
 
@@ -46,6 +55,7 @@ class EmitterCompiler:
             self.problems.extend(error.problems)
             return
         rows["scale"], rows["two_sided"] = scale, emission.sides == "both"
+        rows["visible"], rows["image"] = emission.visible, -1
         rows["spectrum"] = self.spectra.row(table)
         placed.emitter = self.count
         self.count += len(rows)
@@ -59,21 +69,12 @@ class EmitterCompiler:
         if emission.luminance is not None:
             full = tabulate(emission.spectrum, *POWER_RANGE, "emission")
             unit = luminance(full, POWER_RANGE[0])
-            return self._ratio(emission, "luminance", emission.luminance, unit)
+            return ratio(emission, "luminance", emission.luminance, unit)
         if emission.power is not None:
             full = tabulate(emission.spectrum, *POWER_RANGE, "emission")
             sides = 2 if emission.sides == "both" else 1
-            return self._ratio(emission, "power", emission.power, math.pi * sides * area * integrate(full))
+            return ratio(emission, "power", emission.power, math.pi * sides * area * integrate(full))
         return 1.0 if emission.radiance is None else emission.radiance
-
-    @staticmethod
-    def _ratio(emission, key, wanted, unit):
-        if wanted == 0.0:
-            return 0.0
-        if not unit > 0.0:
-            message = f"the spectrum has no {key}, and no factor can give it one"
-            raise SceneError([problem(emission, key, message)])
-        return wanted / unit
 
     def _rows(self, placed):
         """Emitter rows of a placed shape, in render space, one per primitive."""
@@ -126,12 +127,33 @@ class EmitterCompiler:
 
     def table(self):
         """`tables.Emitters`, or `None` where nothing emits at the scene's wavelengths."""
-        powers = np.concatenate(self.powers) if self.powers else np.zeros(0)
+        powers = np.concatenate([*self.powers, self.lights.powers])
         if not powers.sum() > 0.0:
             return None
-        records = np.concatenate(self.records)
+        records = np.concatenate([*self.records, self.lights.rows])
         alias, records["pdf_select"] = build_alias_table(powers)
-        return tables.Emitters(Table(records), Table(alias) if len(records) > 1 else None)
+        n_background = self.lights.n_background
+        background = len(records) - n_background if n_background else None
+        alias = Table(alias) if len(records) > 1 else None
+        return tables.Emitters(Table(records), alias, background, self.lights.images.table())
+
+    def place_in_media(self, scene):
+        """Write the dielectrics that each emitter stands in to its record; those of a shape share the first one's."""
+        records = scene.emitters.records.array
+        for placed in self.geometry.placed:
+            if placed.emitter >= 0:
+                first = records[placed.emitter]
+                media = media_at(scene, *_outwards(scene, first))
+                records["media"][placed.emitter : placed.emitter + placed.part.count] = media
+        for row in records[self.count :]:
+            if row["kind"] <= tables.SPOT_EMITTER:
+                row["media"] = media_at(scene, vec3(*row["origin"]), ANYWHERE)
+
+
+def _outwards(scene, emitter):
+    """A point of an emitting shape, just off its front, and the direction away from it."""
+    start = sample_emission(scene, emitter, 0.3, 0.4, 0.25, 0.4)
+    return offset_position(start.position, start.normal, start.extent, start.direction), start.direction
 
 
 def _uniform_scale(linear):

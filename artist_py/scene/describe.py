@@ -29,10 +29,29 @@ FEATURES = {
     "parallelogram_emitters": ("sampling of emitting rectangles", "no rectangle or box emits"),
     "sphere_emitters": ("sampling of spheres by solid angle", "no sphere emits"),
     "quadric_emitters": ("sampling of other exact shapes", "no disk, cylinder or cone emits"),
+    "surfaceless_emitters": ("emitters without a surface", "all light comes from shapes"),
+    "point_emitters": ("points that emit", "no point emitter"),
+    "spot_emitters": ("points that emit into a cone", "no spot emitter"),
+    "distant_emitters": ("directional light and suns", "no directional emitter"),
+    "environments": ("light from everywhere around", "no environment"),
+    "environment_images": ("environments from images", "no environment has an image"),
+    "hidden_emitters": ("emitters that the camera does not see", "every emitter is visible"),
     "one_sided": ("materials that are black from behind", "every material is two-sided"),
     "textures": ("reflectances that vary over surfaces", "no material has a texture"),
     "shared_wavelengths": ("one set of wavelengths per iteration", "every path has its own wavelengths"),
 }
+
+EMITTER_NAMES = (
+    "triangles",
+    "parallelograms",
+    "spheres",
+    "other exact shapes",
+    "points",
+    "spots",
+    "directional",
+    "suns",
+    "environments",
+)
 
 
 def describe(compiled, memory):
@@ -69,8 +88,7 @@ def _lights(compiled):
     if emitters is None:
         return [("emitters", "none: the image will be black")]
     records = emitters.records.array
-    names = ("triangles", "parallelograms", "spheres", "other exact shapes")
-    rows = [(name, f"{np.sum(records['kind'] == kind):,}") for kind, name in enumerate(names)]
+    rows = [(name, f"{np.sum(records['kind'] == kind):,}") for kind, name in enumerate(EMITTER_NAMES)]
     rows = [row for row in rows if row[1] != "0"]
     chance = records["pdf_select"]
     rows.append(("chosen by power", f"probabilities from {chance.min():.3g} to {chance.max():.3g}"))
@@ -90,7 +108,7 @@ def _textures(compiled):
     colours = {1: "grey", 3: "RGB"}
     rows = [
         (image.path, f"{image.width} x {image.height}, {colours[image.channels]}, {_size(image.nbytes)}")
-        for image in compiled.images
+        for image in compiled.texture_images
     ]
     boards = int(np.sum(compiled.scene.textures.records.array["kind"] == tables.CHECKERBOARD))
     return rows + ([("checkerboards", str(boards))] if boards else [])

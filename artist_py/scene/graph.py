@@ -2,12 +2,13 @@
 
 Lengths are in scene units, angles in degrees, wavelengths in nm, radiance in W m^-2 sr^-1 nm^-1. A key
 without a default must be given. The converters (`fields.py`) say what a value may be, `problems` what keys
-may not say together. Shapes are in `shape_types.py`, spectra in `spectrum_types.py`, transforms in
-`transforms.py`, textures in `texture_types.py`.
+may not say together. Shapes are in `shape_types.py`, emitters without a shape in `emitter_types.py`, spectra
+in `spectrum_types.py`, textures in `texture_types.py`, transforms in `transforms.py`.
 """
 
 import math
 
+from artist_py.scene.emitter_types import EMITTERS, Emitter
 from artist_py.scene.fields import (
     Array,
     Choice,
@@ -256,7 +257,9 @@ MATERIALS = {
     "thin-dielectric": ThinDielectric,
     "none": PassThrough,
 }
-TYPE_NAMES = {cls: name for classes in (CAMERAS, MATERIALS, SHAPES) for name, cls in classes.items()}
+TYPE_NAMES = {
+    cls: name for classes in (CAMERAS, MATERIALS, SHAPES, EMITTERS) for name, cls in classes.items()
+}
 
 
 @node
@@ -289,6 +292,7 @@ class Scene(Node):
     objects: dict[str, Object] = key(Dictionary(Table(Object)), None)
     shapes: tuple[Shape, ...] = key(Array(shape, expected="an array of tables"), ())
     instances: tuple[Instance, ...] = key(Array(Table(Instance), expected="an array of tables"), ())
+    emitters: tuple[Emitter, ...] = key(Array(Variant(EMITTERS), expected="an array of tables"), ())
 
     def __post_init__(self):
         for name in ("spectra", "materials", "objects"):

@@ -48,7 +48,7 @@ def _plain(value, of_path):
         content = {"type": TYPE_NAMES[type(value)]} if type(value) in TYPE_NAMES else {}
         for name, f in keys_of(type(value)).items():
             item = getattr(value, f.name)
-            is_path = isinstance(f.metadata["convert"], FilePath)
+            is_path = isinstance(f.metadata["convert"], FilePath) and item is not None
             content[name] = of_path(value, name, item) if is_path else _plain(item, of_path)
         return content
     if isinstance(value, dict):

@@ -14,7 +14,7 @@ from artist_py.scene.where import Where
 
 __all__ = ["read_scene", "read_scene_text", "scene_hash", "settings"]
 NAMED_SECTIONS = ("spectra", "materials", "objects")
-LISTS = ("shapes", "instances")
+LISTS = ("shapes", "instances", "emitters")
 SINGLE_TABLES = ("film", "camera", "render")
 
 

@@ -36,6 +36,7 @@ class Emission(Node):
     luminance: float | None = key(_not_negative, None)  # cd/m2 of the surface
     power: float | None = key(_not_negative, None)  # W of the whole shape, from 300 to 780 nm
     sides: str = key(Choice(("front", "both")), "front")
+    visible: bool = key(Flag(), True)  # false: the camera sees the shape, but not that it emits
 
     def problems(self):
         given = [name for name in ("radiance", "luminance", "power") if getattr(self, name) is not None]
@@ -47,7 +48,7 @@ class EmissionField:
     """A spectrum, which is the radiance, or a table of `Emission`."""
 
     expected = "a spectrum or a table with a spectrum"
-    keys = frozenset({"spectrum", "radiance", "luminance", "power", "sides"})
+    keys = frozenset({"spectrum", "radiance", "luminance", "power", "sides", "visible"})
 
     def __call__(self, value, at):
         if isinstance(value, dict) and not self.keys.isdisjoint(value):

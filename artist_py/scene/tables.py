@@ -20,8 +20,10 @@ SPHERE, DISK, CYLINDER, CONE = range(4)
 # BSDF kinds; those up to CONDUCTOR have a reflectance. ABSORBER is black from both sides and ends every path.
 DIFFUSE, OREN_NAYAR, MIRROR, CONDUCTOR, DIELECTRIC, THIN_DIELECTRIC, PASS_THROUGH, ABSORBER = range(8)
 
-# Emitter kinds: how a point on the emitter is sampled.
+# Emitter kinds: how a point on the emitter is sampled. Those without a surface come last, of them those at infinity,
+# and of these those that rays can hit.
 TRIANGLE_EMITTER, PARALLELOGRAM_EMITTER, SPHERE_EMITTER, QUADRIC_EMITTER = range(4)
+POINT_EMITTER, SPOT_EMITTER, DIRECTIONAL_EMITTER, SUN_EMITTER, ENVIRONMENT_EMITTER = range(4, 9)
 
 # Texture kinds.
 IMAGE, CHECKERBOARD = range(2)
@@ -98,15 +100,32 @@ emitter_dtype = np.dtype(
         ("spectrum", "i4"),  # row of the spectra, W m^-2 sr^-1 nm^-1 once scaled
         ("two_sided", "i4"),
         ("quadric", "i4"),
+        ("visible", "i4"),  # 0: not seen straight from the camera
+        ("image", "i4"),  # environment: row of the images, or -1
+        ("green", "i4"),  # environment with an image: rows of the spectra; `spectrum` is that of red
+        ("blue", "i4"),
         ("media", "i8"),  # the dielectrics that it stands in, see transport/media.py
         ("scale", "f8"),
         ("pdf_select", "f8"),  # probability of choosing this emitter, discrete
-        ("area", "f8"),  # render-space units squared
-        ("origin", "f8", 3),  # triangle and parallelogram: a corner; sphere: its centre
-        ("edge0", "f8", 3),
+        (
+            "area",
+            "f8",
+        ),  # render-space units squared; point and spot: 1; at infinity: of the disk around the scene
+        (
+            "origin",
+            "f8",
+            3,
+        ),  # triangle and parallelogram: a corner; sphere: its centre; point and spot: where it is
+        ("edge0", "f8", 3),  # environment: edge0, edge1 and normal are the axes of its image
         ("edge1", "f8", 3),
-        ("normal", "f8", 3),  # triangle and parallelogram: unit, on the emitting side
-        ("radius", "f8"),  # sphere
+        (
+            "normal",
+            "f8",
+            3,
+        ),  # unit; faces: on the emitting side; spot: its axis; directional and sun: towards the light
+        ("radius", "f8"),  # sphere; at infinity: that of the disk around the scene
+        ("cone", "f8"),  # spot and sun: 1 - cos of the half angle
+        ("inner_cone", "f8"),  # spot: the same of the part that is not dimmed
         ("flip", "f8"),  # sphere and quadric: -1 where the inner side is the front
     ],
     align=True,
@@ -130,12 +149,20 @@ texture_dtype = np.dtype(
         ("is_nearest", "i4"),  # image: 1: no interpolation
         ("width", "i4"),  # image: texels
         ("height", "i4"),
-        (
-            "offset",
-            "i8",
-        ),  # image: where its texels begin in the pool: row by row from the top, channels together
+        ("offset", "i8"),  # image: its first texel in the pool; row by row from the top, channels together
         ("repeat_u", "f8"),  # images, or squares of the checkerboard, from 0 to 1 along u
         ("repeat_v", "f8"),  # and along v
+    ],
+    align=True,
+)
+
+# A latitude-longitude image, see emitters/environment.py.
+image_dtype = np.dtype(
+    [
+        ("width", "i8"),
+        ("height", "i8"),
+        ("first_texel", "i8"),
+        ("first_row", "i8"),
     ],
     align=True,
 )
@@ -164,11 +191,24 @@ class Spectra(NamedTuple):
     first: float  # nm, lower edge of bin 0
 
 
+class EnvironmentImages(NamedTuple):
+    """Latitude-longitude images, and how their texels are drawn: see emitters/environment.py."""
+
+    records: Table  # image_dtype
+    texels: Table  # float32 (n, 3), linear sRGB
+    columns: Table  # float64 (n,): within a row, the probability of all texels up to and with this one
+    rows: Table  # float64: the same of the rows of an image
+
+
 class Emitters(NamedTuple):
     """What emits; `alias` is absent when there is one emitter only."""
 
     records: Table  # emitter_dtype
     alias: Table | None  # alias_dtype
+    background: (
+        int | None
+    )  # rows from here on are what rays find that leave the scene; absent where there is nothing
+    images: EnvironmentImages | None
 
 
 class Textures(NamedTuple):
@@ -199,6 +239,13 @@ class Needs(NamedTuple):
     parallelogram_emitters: bool | None = None
     sphere_emitters: bool | None = None
     quadric_emitters: bool | None = None
+    surfaceless_emitters: bool | None = None  # any of the following four
+    point_emitters: bool | None = None
+    spot_emitters: bool | None = None
+    distant_emitters: bool | None = None  # directional ones and suns
+    environments: bool | None = None
+    environment_images: bool | None = None
+    hidden_emitters: bool | None = None  # an emitter that the camera does not see
     one_sided: bool | None = None  # a material that is black from behind
     textures: bool | None = None
     shared_wavelengths: bool | None = None

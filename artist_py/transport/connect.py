@@ -7,13 +7,19 @@ from ..bsdf.dispatch import evaluate_bsdf, pdf_bsdf
 from ..core.frame import to_local
 from ..core.spectra import black
 from ..core.vector import Spectrum, dot
-from ..emitters.dispatch import choose_emitter, emitted_radiance, is_emitting_towards, sample_emitter
+from ..emitters.dispatch import (
+    can_be_hit,
+    choose_emitter,
+    emitted_radiance,
+    is_emitting_towards,
+    sample_emitter,
+)
 from ..emitters.emission import emission_over_next_event
 from ..geometry.embree import is_occluded
 from ..geometry.surface import leave_surface, offset_position
 from ..jit import function
 from .mis import bracket, weight_of_connection, weight_of_light_image, weight_of_next_event
-from .subpath import adjoint_factor, is_on_side
+from .subpath import adjoint_factor, is_on_side, on_geometric_side
 
 
 class Scattering(NamedTuple):
@@ -32,17 +38,25 @@ def scattering_towards(scene, vertex, wi_world, wavelengths, survival, light_wal
     material = scene.materials[vertex.surface.material]
     smooth = scene.needs.smooth_triangles
     wi = to_local(vertex.frame, wi_world)
+    agrees = is_on_side(smooth, vertex.surface, wi_world, wi)
+    wi = on_geometric_side(smooth, vertex.surface, wi_world, wi)
     pdf = pdf_bsdf(scene.needs, material, vertex.wo, wi)
-    is_black = pdf == 0.0 or not is_on_side(smooth, vertex.surface, wi_world, wi)
+    pdf_rev = pdf_bsdf(scene.needs, material, wi, vertex.wo)
     f = evaluate_bsdf(scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, vertex.wo, wi)
     adjoint = adjoint_factor(light_walk, smooth, vertex, wi_world, wi)
     return Scattering(
         f * (abs(wi.z) * adjoint),
-        pdf * survival,
-        pdf_bsdf(scene.needs, material, wi, vertex.wo) * survival,
+        pdf * survival if agrees else 0.0,
+        pdf_rev * survival if vertex.is_sampled_back else 0.0,
         abs(dot(wi_world, vertex.surface.normal)),
-        is_black,
+        pdf == 0.0 or not (agrees or _may_leave(light_walk)),
     )
+
+
+@function
+def _may_leave(light_walk):
+    """Whether light goes into directions on whose side the normals disagree: from a light walk's vertex it does."""
+    return light_walk is not None
 
 
 @function
@@ -78,7 +92,7 @@ def _to_light(emitters, scene, counts, vertex, partial, survival, wavelengths, u
         return nothing
     emitter = emitters.records[choose_emitter(emitters.alias, u_select)]
     position = vertex.surface.position
-    point = sample_emitter(scene.needs, scene.geometry, emitter, position, u, v)
+    point = sample_emitter(scene, emitter, position, u, v)
     towards = point.position - position
     if point.pdf_solid_angle == 0.0 or not is_emitting_towards(emitter, point.normal, -towards):
         return nothing
@@ -90,14 +104,14 @@ def _to_light(emitters, scene, counts, vertex, partial, survival, wavelengths, u
     if is_blocked(scene, vertex.surface, wi, end):
         return Connected(black(wavelengths), 1)
     pdf_light = point.pdf_solid_angle * emitter.pdf_select
-    emission = emission_over_next_event(scene.needs, scene.geometry, emitter, point, towards, pdf_light)
+    emission = emission_over_next_event(scene, emitter, point, towards, pdf_light)
     weight = weight_of_next_event(
         counts,
-        there.pdf_fwd / pdf_light,
+        can_be_hit(scene.needs.surfaceless_emitters, emitter) * there.pdf_fwd / pdf_light,
         emission * there.cos_theta,
         bracket(counts, partial, there.pdf_rev),
     )
-    radiance = emitted_radiance(scene.spectra, emitter, wavelengths)
+    radiance = emitted_radiance(scene, emitter, -wi, wavelengths)
     return Connected(radiance * there.f_cos * (weight / pdf_light), 1)
 
 

@@ -98,6 +98,8 @@ def _weight(merge_once, scene, method, photon, stored, material, wi, pdf, surviv
     if merge_once is not None:
         return 1.0
     pdf_rev = pdf_bsdf(scene.needs, material, wi, stored.vertex.wo) * survival
+    if not stored.vertex.is_sampled_back:
+        pdf_rev = 0.0
     light = bracket(method.counts, Partial(photon.c, photon.e), pdf * survival)
     eye = bracket(method.counts, stored.partial, pdf_rev)
     return weight_of_merge(method.counts, light, eye)

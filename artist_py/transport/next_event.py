@@ -9,12 +9,15 @@ from ..core.rng import random_pair
 from ..core.spectra import black
 from ..core.vector import Spectrum, dot
 from ..emitters.dispatch import (
+    can_be_hit,
     choose_emitter,
     emitted_radiance,
     is_emitting_towards,
+    is_hidden,
     pdf_emitter,
     sample_emitter,
 )
+from ..emitters.infinite import is_in_background
 from ..geometry.embree import is_occluded
 from ..geometry.surface import leave_surface, offset_position
 from ..jit import function
@@ -45,7 +48,7 @@ def _connect(emitters, scene, vertex, wavelengths, stream, pair, u_select):
     material = scene.materials[vertex.surface.material]
     emitter = emitters.records[choose_emitter(emitters.alias, u_select)]
     u, v = random_pair(stream, pair)
-    point = sample_emitter(scene.needs, scene.geometry, emitter, vertex.surface.position, u, v)
+    point = sample_emitter(scene, emitter, vertex.surface.position, u, v)
     towards = point.position - vertex.surface.position
     if point.pdf_solid_angle == 0.0 or not is_emitting_towards(emitter, point.normal, -towards):
         return Connection(black(wavelengths), 0)
@@ -61,21 +64,22 @@ def _connect(emitters, scene, vertex, wavelengths, stream, pair, u_select):
     f = evaluate_bsdf(scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, vertex.wo, wi)
     pdf_light = point.pdf_solid_angle * emitter.pdf_select
     # The balance heuristic over the density: w / p = 1 / (p + p').
-    weight = abs(wi.z) / (pdf_light + pdf_scatter)
-    return Connection(emitted_radiance(scene.spectra, emitter, wavelengths) * f * weight, 1)
+    pdf_hit = pdf_scatter * can_be_hit(scene.needs.surfaceless_emitters, emitter)
+    weight = abs(wi.z) / (pdf_light + pdf_hit)
+    return Connection(emitted_radiance(scene, emitter, -wi_world, wavelengths) * f * weight, 1)
 
 
 @function
-def radiance_of_hit(scene, surface, path, wavelengths):
+def radiance_of_hit(scene, surface, path, length, wavelengths):
     """Radiance that the surface hit by `path` emits against it, with the MIS weight of having been hit.
 
     The weight is 1 where no emitter could have been sampled: behind the camera and delta lobes.
     """
-    return _of_hit(scene.emitters, scene, surface, path, wavelengths)
+    return _of_hit(scene.emitters, scene, surface, path, length, wavelengths)
 
 
 @function
-def _of_hit(emitters, scene, surface, path, wavelengths):
+def _of_hit(emitters, scene, surface, path, length, wavelengths):
     if emitters is None:
         return black(wavelengths)
     if surface.emitter < 0:
@@ -83,10 +87,41 @@ def _of_hit(emitters, scene, surface, path, wavelengths):
     emitter = emitters.records[surface.emitter]
     if not is_emitting_towards(emitter, surface.normal, -path.direction):
         return black(wavelengths)
-    radiance = emitted_radiance(scene.spectra, emitter, wavelengths)
+    if is_hidden(scene.needs.hidden_emitters, emitter, length):
+        return black(wavelengths)
+    radiance = emitted_radiance(scene, emitter, -path.direction, wavelengths)
     if path.pdf_solid_angle == 0.0:
         return radiance
-    pdf_light = pdf_emitter(
-        scene.needs, scene.geometry, emitter, path.reference, surface.position, surface.normal
-    )
+    pdf_light = pdf_emitter(scene, emitter, path.reference, surface.position, surface.normal)
     return radiance * balance(path.pdf_solid_angle, pdf_light)
+
+
+@function
+def radiance_of_background(scene, path, length, wavelengths):
+    """Radiance that `path`, which leaves the scene, finds at infinity, with the MIS weight of having found it."""
+    return _of_background(scene.emitters, scene, path, length, wavelengths)
+
+
+@function
+def _of_background(emitters, scene, path, length, wavelengths):
+    if emitters is None:
+        return black(wavelengths)
+    return _sum_of_background(emitters.background, emitters.records, scene, path, length, wavelengths)
+
+
+@function
+def _sum_of_background(first, records, scene, path, length, wavelengths):
+    total = black(wavelengths)
+    if first is None:
+        return total
+    for i in range(first, records.shape[0]):
+        emitter = records[i]
+        if is_in_background(emitter, path.direction) and not is_hidden(
+            scene.needs.hidden_emitters, emitter, length
+        ):
+            weight = 1.0
+            if path.pdf_solid_angle > 0.0:
+                pdf_light = pdf_emitter(scene, emitter, path.reference, path.reference, -path.direction)
+                weight = balance(path.pdf_solid_angle, pdf_light)
+            total = total + emitted_radiance(scene, emitter, -path.direction, wavelengths) * weight
+    return total

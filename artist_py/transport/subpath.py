@@ -44,12 +44,33 @@ def with_throughput(path, throughput):
     )
 
 
+@function
+def seen_from(path, reference):
+    """The path with another last vertex than its origin: the lens, for rays that start nearer to the scene."""
+    return Path(
+        path.origin,
+        path.direction,
+        path.throughput,
+        path.pdf_solid_angle,
+        reference,
+        path.radiance_scale,
+        path.ratio,
+        path.media,
+        path.is_absorbed,
+    )
+
+
 class Vertex(NamedTuple):
-    """A surface point in the shading frame; `wo` points back along the path."""
+    """A surface point in the shading frame; `wo` points back along the path.
+
+    Where interpolated normals put `wo` on the other side than the geometric one, no walk leaves into it (`scatter`): it
+    is evaluated on the geometric side, and its reverse density is 0. Light may leave there but not arrive.
+    """
 
     surface: Surface
     frame: Frame
     wo: Vec3
+    is_sampled_back: bool
     reflectance: Spectrum  # of the material here, zero where it has none
 
 
@@ -69,14 +90,16 @@ def vertex_at(scene, surface, path, wavelengths):
 def vertex_on(scene, surface, wo_world, wavelengths):
     """The vertex on `surface` of a path that came from `wo_world`."""
     frame = frame_around(surface.shading_normal)
-    wo = _on_geometric_side(scene.needs.smooth_triangles, surface, wo_world, to_local(frame, wo_world))
+    wo = to_local(frame, wo_world)
+    agrees = is_on_side(scene.needs.smooth_triangles, surface, wo_world, wo)
+    wo = on_geometric_side(scene.needs.smooth_triangles, surface, wo_world, wo)
     material = scene.materials[surface.material]
     reflectance = reflectance_at(scene.textures, material, scene.spectra, wavelengths, surface.u, surface.v)
-    return Vertex(surface, frame, wo, reflectance)
+    return Vertex(surface, frame, wo, agrees, reflectance)
 
 
 @function
-def _on_geometric_side(needed, surface, wo_world, wo):
+def on_geometric_side(needed, surface, wo_world, wo):
     """`wo` on the side of the surface that it really is on, which interpolated normals may deny near silhouettes."""
     if needed is None:
         return wo
@@ -159,7 +182,8 @@ def scatter(scene, vertex, path, wavelengths, stream, pair, u_lobe, light_walk):
         beyond if is_refracted else path.media,
         not is_kept,
     )
-    return Scattered(onwards, sample.pdf, sample.pdf_rev, sample.is_delta, sample.eta)
+    pdf_rev = sample.pdf_rev if vertex.is_sampled_back else 0.0
+    return Scattered(onwards, sample.pdf, pdf_rev, sample.is_delta, sample.eta)
 
 
 @function

@@ -19,24 +19,24 @@ SAMPLES = 50_000
 
 
 @kernel
-def sample_rows(needs, geometry, records, reference, numbers, out):
+def sample_rows(scene, reference, numbers, out):
     """Rows of position, normal, density per solid angle without and with the choice of the emitter."""
     for i in range(numbers.shape[0]):
-        emitter = records[0]
-        point = sample_emitter(needs, geometry, emitter, reference, numbers[i, 0], numbers[i, 1])
+        emitter = scene.emitters.records[0]
+        point = sample_emitter(scene, emitter, reference, numbers[i, 0], numbers[i, 1])
         p, n = point.position, point.normal
         out[i, 0], out[i, 1], out[i, 2] = p.x, p.y, p.z
         out[i, 3], out[i, 4], out[i, 5] = n.x, n.y, n.z
         out[i, 6] = point.pdf_solid_angle
-        out[i, 7] = pdf_emitter(needs, geometry, emitter, reference, p, n)
+        out[i, 7] = pdf_emitter(scene, emitter, reference, p, n)
 
 
 @kernel
-def density_rows(needs, geometry, records, reference, points, normals, out):
+def density_rows(scene, reference, points, normals, out):
     for i in range(points.shape[0]):
         p = vec3(points[i, 0], points[i, 1], points[i, 2])
         n = vec3(normals[i, 0], normals[i, 1], normals[i, 2])
-        out[i] = pdf_emitter(needs, geometry, records[0], reference, p, n)
+        out[i] = pdf_emitter(scene, scene.emitters.records[0], reference, p, n)
 
 
 # --- emitters, and their surfaces parametrised by the unit square -------------------------------------------------
@@ -78,9 +78,7 @@ class Case:
     def rows(self, numbers):
         """Positions, normals and both densities, in render space."""
         out = np.empty((len(numbers), 8))
-        tables = self.compiled.scene
-        arguments = tables.needs, tables.geometry, tables.emitters.records, Vec3(self.reference)
-        sample_rows(*arguments, Table(numbers), Table(out))
+        sample_rows(self.compiled.scene, Vec3(self.reference), Table(numbers), Table(out))
         return out
 
     def sample(self, numbers):
@@ -101,8 +99,7 @@ class Case:
         normals = np.cross(*along)
         normals /= np.linalg.norm(normals, axis=1, keepdims=True)
         out = np.empty(len(points))
-        tables = self.compiled.scene
-        arguments = tables.needs, tables.geometry, tables.emitters.records, Vec3(self.reference)
+        arguments = self.compiled.scene, Vec3(self.reference)
         density_rows(*arguments, Table(self.to_render(points)), Table(normals), Table(out))
         towards = points - self.to_world(self.reference)
         distance = np.linalg.norm(towards, axis=1)

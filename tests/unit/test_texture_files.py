@@ -94,7 +94,7 @@ class TestReading:
         (tmp_path / "lib").mkdir()
         write_image("lib/a.png", RGB)
         graph = read_scene_text(SCENE.replace("{reflectance}", '{ image = "a.png" }'), file="lib/scene.toml")
-        assert compile_scene(graph).images[0].path == str(Path("lib/a.png"))
+        assert compile_scene(graph).texture_images[0].path == str(Path("lib/a.png"))
 
     @pytest.mark.parametrize(
         ("reflectance", "message"),
@@ -281,7 +281,7 @@ class TestBroken:
     def test_too_large(self, monkeypatch):
         write_image("a.png", np.zeros((30, 40, 3), np.uint8))
         monkeypatch.setattr(textures, "MAX_PIXELS", 40 * 30)
-        assert compiled().images[0].width == 40
+        assert compiled().texture_images[0].width == 40
         monkeypatch.setattr(textures, "MAX_PIXELS", 40 * 30 - 1)
         self.assert_message("expected at most 1199 pixels, found 40 x 30")
 
@@ -373,7 +373,7 @@ class TestScene:
         assert len(texels) == 24 and texels.dtype == np.uint16
         assert records["is_nearest"].tolist() == [0, 0, 1, 0]
         assert scene.scene.materials.array["texture"].tolist() == [-1, 0, 1, 2, 3]
-        assert [image.nbytes for image in scene.images] == [24, 24]
+        assert [image.nbytes for image in scene.texture_images] == [24, 24]
 
     def test_checkerboards_have_no_texels(self):
         scene = compiled("{ checkerboard = [0.2, 0.8] }")

@@ -1,0 +1,110 @@
+"""Every integrator converges to the picture of the path tracer, on scenes that hold all materials, shapes and cameras.
+
+The images are compared in blocks of pixels by Z-tests with the variance of both. Of the blocks of all comparisons one
+may fail by chance with probability 1e-3 (Sidak); the power is stated by `PRECISION`: an image that is wrong by more
+than a few per cent in its mean is caught. Methods that merge are biased by their radius, which is small here.
+"""
+
+import numpy as np
+import pytest
+from rendering import look, scene, shape
+from scipy import stats
+
+import artist_py
+
+SIZE, BLOCK, ITERATIONS = 24, 6, 256
+PRECISION = 0.01  # standard error of the image's mean that each image has to reach, relative
+METHODS = ("lt", "bpt", "ppm", "bpm", "vcm")
+FALSE_ALARM = 1e-3
+COMPARISONS = 3 * len(METHODS) * (SIZE // BLOCK) ** 2
+
+
+ROOM = [
+    shape("box", "white", min=[-1, -1, -1], max=[1, 1, 1], reverse=True),
+    shape("rectangle", corner=[-0.4, -0.4, 0.98], edges=[[0, 0.8, 0], [0.8, 0, 0]], emission=8),
+]
+MATERIALS = {
+    "white": {"type": "diffuse", "reflectance": 0.6},
+    "matte": {"type": "oren-nayar", "reflectance": 0.5, "roughness": 30},
+    "glass": {"type": "dielectric", "ior": "SF10"},
+    "water": {"type": "dielectric", "ior": 1.33},
+    "mirror": {"type": "mirror", "reflectance": 0.9},
+    "gold": {"type": "conductor", "metal": "Au"},
+    "pane": {"type": "thin-dielectric"},
+}
+SCENES = {
+    "diffuse": {
+        "shapes": [*ROOM, shape("box", "matte", center=[0.2, 0.1, -0.7], size=[0.6, 0.6, 0.6])],
+        "camera": look([0, -0.9, 0], [0, 1, -0.2], 70),
+    },
+    "specular": {
+        "shapes": [
+            *ROOM,
+            shape("sphere", "glass", center=[-0.4, 0.2, -0.5], radius=0.4),
+            shape("sphere", "water", center=[-0.4, 0.2, -0.5], radius=0.2),
+            shape("cone", "gold", base=[0.5, 0.2, -1], apex=[0.5, 0.2, -0.2], radius=0.3),
+            shape("cylinder", "matte", base=[0.1, 0.7, -1], top=[0.1, 0.7, -0.3], radius=0.2),
+            shape("rectangle", "pane", corner=[-0.2, -0.3, -1], edges=[[0.9, 0, 0], [0, 0, 0.8]]),
+            shape("sphere", center=[0.6, -0.2, 0.3], radius=0.15, emission=10),
+        ],
+        "camera": look([0, -0.95, 0], [0, 1, -0.4], 75),
+    },
+    "smooth": {
+        "shapes": [
+            *ROOM,
+            shape("grooved-sphere", "matte", center=[0, 0.2, -0.4], radius=0.5, segments=32, grooves=3),
+            shape("disk", "mirror", center=[0.7, 0.6, 0], normal=[-1, -1, 0], radius=0.4),
+        ],
+        "camera": {
+            **look([0, -0.9, 0.3], [0, 1, -0.6], 70),
+            "type": "thin-lens",
+            "aperture_radius": 0.05,
+            "focus_distance": 1.0,
+        },
+    },
+}
+
+
+def image(name, integrator):
+    film = {"resolution": [SIZE, SIZE], "filter": "mitchell" if name == "diffuse" else "blackman-harris"}
+    wavelengths = "shared" if integrator in ("ppm", "bpm", "vcm") else "independent"
+    # Seeds of their own: equal ones would give equal eye subpaths.
+    seed = 1 + METHODS.index(integrator) if integrator != "pt" else 99
+    render = {"integrator": integrator, "wavelengths": wavelengths, "seed": seed, "max_path_length": 7}
+    # Merging alone needs more photons and a larger radius to be precise; their bias is still far below the error.
+    merging = {"radius": 0.01, "light_paths": 8} if integrator in ("ppm", "bpm") else {"radius": 0.002}
+    render |= {"wavelength_range": [380, 780], "merging": merging}
+    compiled = scene(materials=MATERIALS, film=film, render=render, **SCENES[name])
+    result = artist_py.render(compiled, iterations=ITERATIONS, threads=2, aovs=("variance",)).film
+    assert result.rejected_count == 0
+    return result
+
+
+def blocks(values):
+    count = SIZE // BLOCK
+    return values.reshape(count, BLOCK, count, BLOCK, 3).sum(axis=(1, 3))
+
+
+@pytest.fixture(scope="module")
+def path_traced():
+    cache = {}
+
+    def get(name):
+        if name not in cache:
+            cache[name] = image(name, "pt")
+        return cache[name]
+
+    return get
+
+
+@pytest.mark.parametrize("integrator", METHODS)
+@pytest.mark.parametrize("name", SCENES)
+def test_agrees_with_path_tracing(name, integrator, path_traced):
+    expected, found = path_traced(name), image(name, integrator)
+    variance = expected.variance + found.variance
+    error = np.sqrt(found.variance.sum(axis=(0, 1))) / found.rgb.sum(axis=(0, 1))
+    assert np.all(error < PRECISION * (2 if integrator in ("ppm", "bpm") else 1)), error
+    z = np.abs(blocks(found.rgb - expected.rgb)) / np.sqrt(blocks(variance))
+    # The channels of one block follow each other: they count as one comparison of their largest deviation each.
+    allowed = stats.norm.isf(0.5 * (1.0 - (1.0 - FALSE_ALARM) ** (1.0 / (3 * COMPARISONS))))
+    assert z.max() < allowed, f"{z.max():.2f} standard errors, allowed {allowed:.2f}"

@@ -7,15 +7,20 @@ not two-sided.
 """
 
 from ..core.spectra import black
-from ..core.vector import vec3
+from ..core.vector import lane_max, vec3
 from ..jit import function
-from ..scene.tables import CONDUCTOR, DIELECTRIC, DIFFUSE, MIRROR, OREN_NAYAR, PASS_THROUGH, THIN_DIELECTRIC
+from ..scene.tables import CONDUCTOR, DIELECTRIC, MIRROR, PASS_THROUGH, PHONG, PLASTIC, THIN_DIELECTRIC
 from .conductor import reflectance_conductor, sample_conductor
+from .connectable import (
+    evaluate_connectable,
+    pdf_connectable,
+    reflectance_connectable,
+    sample_connectable,
+)
 from .dielectric import reflectance_dielectric, sample_dielectric
-from .diffuse import evaluate_diffuse, pdf_diffuse, reflectance_diffuse, sample_diffuse
 from .mirror import reflectance_mirror, sample_mirror
-from .oren_nayar import evaluate_oren_nayar, pdf_oren_nayar, reflectance_oren_nayar, sample_oren_nayar
 from .pass_through import reflectance_pass_through, sample_pass_through
+from .phong import bound_phong
 from .thin_dielectric import reflectance_thin_dielectric, sample_thin_dielectric
 from .types import BsdfSample, absorption
 
@@ -67,35 +72,9 @@ def _sample_reflective(
     needs, material, reflectance, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
 ):
     kind = material.kind
-    if kind == DIFFUSE:
-        return sample_diffuse(
-            needs.diffuse,
-            material,
-            reflectance,
-            spectra,
-            wavelengths,
-            wo,
-            u,
-            v,
-            w,
-            ratio,
-            ior_outside,
-            light_walk,
-        )
-    if kind == OREN_NAYAR:
-        return sample_oren_nayar(
-            needs.oren_nayar,
-            material,
-            reflectance,
-            spectra,
-            wavelengths,
-            wo,
-            u,
-            v,
-            w,
-            ratio,
-            ior_outside,
-            light_walk,
+    if not is_delta_bsdf(material):
+        return sample_connectable(
+            needs, material, reflectance, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
         )
     if kind == MIRROR:
         return sample_mirror(
@@ -186,31 +165,24 @@ def _sample_transmissive(
 @function
 def evaluate_bsdf(needs, material, reflectance, spectra, wavelengths, wo, wi):
     """f(wo, wi) without the cosine, sr^-1; symmetric in its directions, and zero for what has delta lobes only."""
-    if wo.z * wi.z <= 0.0 or is_black(needs.one_sided, material, wo):
+    if wo.z * wi.z <= 0.0 or is_delta_bsdf(material) or is_black(needs.one_sided, material, wo):
         return black(wavelengths)
-    kind = material.kind
-    if kind == DIFFUSE:
-        return evaluate_diffuse(
-            needs.diffuse, material, reflectance, spectra, wavelengths, _turned(wo, wo), _turned(wi, wo)
-        )
-    if kind == OREN_NAYAR:
-        return evaluate_oren_nayar(
-            needs.oren_nayar, material, reflectance, spectra, wavelengths, _turned(wo, wo), _turned(wi, wo)
-        )
-    return black(wavelengths)
+    return evaluate_connectable(
+        needs, material, reflectance, spectra, wavelengths, _turned(wo, wo), _turned(wi, wo)
+    )
 
 
 @function
-def pdf_bsdf(needs, material, wo, wi):
-    """Density of `sample_bsdf` at `wi` for `wo`, sr^-1; with swapped directions, that of the reverse walk."""
-    if wo.z * wi.z <= 0.0 or is_black(needs.one_sided, material, wo):
+def pdf_bsdf(needs, material, reflectance, spectra, wavelengths, wo, wi):
+    """Density of `sample_bsdf` at `wi` for `wo`, sr^-1; with swapped directions, that of the reverse walk.
+
+    Where there are delta lobes as well, it holds the probability that none of these is sampled.
+    """
+    if wo.z * wi.z <= 0.0 or is_delta_bsdf(material) or is_black(needs.one_sided, material, wo):
         return 0.0
-    kind = material.kind
-    if kind == DIFFUSE:
-        return pdf_diffuse(needs.diffuse, material, _turned(wo, wo), _turned(wi, wo))
-    if kind == OREN_NAYAR:
-        return pdf_oren_nayar(needs.oren_nayar, material, _turned(wo, wo), _turned(wi, wo))
-    return 0.0
+    return pdf_connectable(
+        needs, material, reflectance, spectra, wavelengths, _turned(wo, wo), _turned(wi, wo)
+    )
 
 
 @function
@@ -228,14 +200,8 @@ def reflectance_bsdf(needs, material, reflectance, spectra, wavelengths, wo, ior
 @function
 def _reflective_reflectance(needs, material, reflectance, spectra, wavelengths, wo, ior_outside):
     kind = material.kind
-    if kind == DIFFUSE:
-        return reflectance_diffuse(
-            needs.diffuse, material, reflectance, spectra, wavelengths, wo, ior_outside
-        )
-    if kind == OREN_NAYAR:
-        return reflectance_oren_nayar(
-            needs.oren_nayar, material, reflectance, spectra, wavelengths, wo, ior_outside
-        )
+    if not is_delta_bsdf(material):
+        return reflectance_connectable(needs, material, reflectance, spectra, wavelengths, wo, ior_outside)
     if kind == MIRROR:
         return reflectance_mirror(needs.mirror, material, reflectance, spectra, wavelengths, wo, ior_outside)
     if kind == CONDUCTOR:
@@ -264,9 +230,27 @@ def _transmissive_reflectance(needs, material, reflectance, spectra, wavelengths
 
 
 @function
+def survival_bsdf(needs, material, reflectance, spectra, wavelengths):
+    """Probability in [0, 1] for a walk to go on after the material: the most that it scatters of light from anywhere.
+
+    It is the same for both walks and for all directions, so that MIS densities may hold it (theory 1.8).
+    """
+    if material.kind == PLASTIC or material.kind >= DIELECTRIC:
+        return 1.0
+    if material.kind == PHONG:
+        return _lane_survival(bound_phong(needs.phong, material, reflectance, spectra, wavelengths))
+    return _lane_survival(reflectance)
+
+
+@function
+def _lane_survival(reflectance):
+    return min(1.0, float(lane_max(reflectance)))
+
+
+@function
 def is_delta_bsdf(material):
     """Whether the material has delta lobes only, so that nothing can be connected to it or merged at it."""
-    return material.kind != DIFFUSE and material.kind != OREN_NAYAR
+    return material.kind >= MIRROR
 
 
 @function

@@ -72,6 +72,17 @@ class TextureCompiler:
         self.warnings.extend(warnings)
         return offset, values.shape
 
+    def largest_reflectance(self, index):
+        """A bound on the reflectance of a texture anywhere, per bin."""
+        record = self.records[index][0]
+        colors = 2 if record["kind"] == tables.CHECKERBOARD else record["channels"]
+        first, *others = (self.spectra.rows[row] for row in record["spectra"][:colors])
+        if record["kind"] == tables.CHECKERBOARD:
+            return np.maximum(first, *others)
+        size = record["width"] * record["height"] * record["channels"]
+        texels = np.concatenate(self.pool)[record["offset"] : record["offset"] + size]
+        return (texels.max() / 65535.0) ** 2 * sum(others, first)
+
     def table(self):
         """`tables.Textures`, or `None` where nothing is textured."""
         if not self.records:

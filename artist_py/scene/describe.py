@@ -10,11 +10,14 @@ from artist_py.scene.identity import settings as effective_settings
 FEATURES = {
     "diffuse": ("Lambertian reflection", "no diffuse material"),
     "oren_nayar": ("rough diffuse reflection", "no oren-nayar material"),
+    "phong": ("Phong's lobe", "no phong material"),
+    "plastic": ("diffuse reflection under a clear coat", "no plastic material"),
     "mirror": ("ideal mirrors", "no mirror material"),
     "conductor": ("smooth metals, complex Fresnel", "no conductor material"),
     "dielectric": ("smooth glass, refraction", "no dielectric material"),
     "thin_dielectric": ("thin panes", "no thin-dielectric material"),
     "pass_through": ("surfaces that light ignores", 'no material of type "none"'),
+    "lobes": ("a choice between lobes", "no material has more than one lobe"),
     "dispersion": (
         "refraction by wavelength, lane densities",
         "no index of refraction depends on wavelength",

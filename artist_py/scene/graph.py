@@ -41,6 +41,7 @@ LONGEST_STORED = 1000  # edges of subpaths whose vertices are stored
 WHITE_LUMINANCE = {"CIE 1931 2": 72983.4866019817, "CIE 1964 10": 79680.2951650147}
 
 _count = Number(at_least=1, whole=True)
+_share = SpectrumField(Number(at_least=0, at_most=1))
 _radiance = SpectrumField(Number(at_least=0))
 _positive_spectrum = SpectrumField(Number(above=0))
 
@@ -202,6 +203,23 @@ class OrenNayar(Material):
 
 
 @node
+class Phong(Material):
+    """type = "phong": matte, and glossy about the mirrored direction."""
+
+    reflectance: Spectrum | Texture = key(_reflectance, Constant(0.5))  # of the matte part
+    specular: Spectrum = key(_share, Constant(0.2))  # of the glossy part, seen along the normal
+    exponent: float = key(Number(at_least=0, at_most=1e6), 30.0)  # of the cosine: the larger, the sharper
+
+
+@node
+class Plastic(Material):
+    """type = "plastic": matte under a smooth clear coat."""
+
+    reflectance: Spectrum | Texture = key(_reflectance, Constant(0.5))  # of what is under the coat
+    ior: float = key(Number(at_least=1, at_most=10), 1.5)  # of the coat, over that of what surrounds it
+
+
+@node
 class Mirror(Material):
     """type = "mirror": reflects the same share at every angle."""
 
@@ -251,6 +269,8 @@ class PassThrough(Node):
 MATERIALS = {
     "diffuse": Diffuse,
     "oren-nayar": OrenNayar,
+    "phong": Phong,
+    "plastic": Plastic,
     "mirror": Mirror,
     "conductor": Conductor,
     "dielectric": Dielectric,

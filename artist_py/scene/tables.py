@@ -17,8 +17,10 @@ TRIANGLES, SMOOTH_TRIANGLES, PARALLELOGRAMS, QUADRICS = range(4)
 # Quadric kinds, each in its canonical frame (see geometry/quadrics.py).
 SPHERE, DISK, CYLINDER, CONE = range(4)
 
-# BSDF kinds; those up to CONDUCTOR have a reflectance. ABSORBER is black from both sides and ends every path.
-DIFFUSE, OREN_NAYAR, MIRROR, CONDUCTOR, DIELECTRIC, THIN_DIELECTRIC, PASS_THROUGH, ABSORBER = range(8)
+# BSDF kinds: first those with a density, then those of delta lobes only, of these last what transmits; those up to
+# CONDUCTOR have a reflectance. ABSORBER is black from both sides and ends every path.
+DIFFUSE, OREN_NAYAR, PHONG, PLASTIC = range(4)
+MIRROR, CONDUCTOR, DIELECTRIC, THIN_DIELECTRIC, PASS_THROUGH, ABSORBER = range(4, 10)
 
 # Emitter kinds: how a point on the emitter is sampled. Those without a surface come last, of them those at infinity,
 # and of these those that rays can hit.
@@ -85,11 +87,14 @@ material_dtype = np.dtype(
         ("reflectance", "i4"),  # row of the spectra, [0, 1]
         ("eta", "i4"),  # row: conductor's real index of refraction, or the dispersive dielectric's
         ("absorption", "i4"),  # row: conductor's imaginary index of refraction
+        ("specular", "i4"),  # row: Phong lobe's reflectance along the normal
         ("is_dispersive", "i4"),
         ("medium", "i4"),  # dielectric: its row in `Scene.media`, from 1
         ("texture", "i4"),  # row of the textures that replaces `reflectance`, or -1
-        ("ior", "f8"),  # dielectric's index of refraction where it does not depend on wavelength
+        ("ior", "f8"),  # index of refraction of a dielectric or a coat where it does not depend on wavelength
+        ("transmittance", "f8"),  # plastic: share of diffuse light from outside that enters the coat
         ("roughness", "f8"),  # Oren-Nayar: standard deviation of facet slopes' angle, radians
+        ("exponent", "f8"),  # Phong: n of cos^n
     ],
     align=True,
 )
@@ -223,11 +228,14 @@ class Needs(NamedTuple):
 
     diffuse: bool | None = None
     oren_nayar: bool | None = None
+    phong: bool | None = None
+    plastic: bool | None = None
     mirror: bool | None = None
     conductor: bool | None = None
     dielectric: bool | None = None
     thin_dielectric: bool | None = None
     pass_through: bool | None = None
+    lobes: bool | None = None  # a material that chooses between lobes
     dispersion: bool | None = None  # a dielectric whose index depends on wavelength
     media: bool | None = None  # dielectrics inside or overlapping dielectrics
     triangles: bool | None = None

@@ -54,7 +54,9 @@ def _connect(emitters, scene, vertex, wavelengths, stream, pair, u_select):
         return Connection(black(wavelengths), 0)
     wi_world = towards * (1.0 / math.sqrt(dot(towards, towards)))
     wi = to_local(vertex.frame, wi_world)
-    pdf_scatter = pdf_bsdf(scene.needs, material, vertex.wo, wi)
+    pdf_scatter = pdf_bsdf(
+        scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, vertex.wo, wi
+    )
     if pdf_scatter == 0.0 or not is_on_side(scene.needs.smooth_triangles, vertex.surface, wi_world, wi):
         return Connection(black(wavelengths), 0)
     start = leave_surface(vertex.surface, wi_world)

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from ..bsdf.reflectance import has_reflectance
+from ..bsdf.dispatch import survival_bsdf
 from ..core.rng import random_number
 from ..core.vector import lane_max
 from ..jit import function
@@ -49,9 +49,8 @@ def local_survival(scene, vertex, wavelengths):
 
     Unlike the throughput it may therefore be part of the densities that weights compare.
     """
-    if not has_reflectance(scene.materials[vertex.surface.material]):
-        return 1.0
-    return min(1.0, float(lane_max(vertex.reflectance)))
+    material = scene.materials[vertex.surface.material]
+    return survival_bsdf(scene.needs, material, vertex.reflectance, scene.spectra, wavelengths)
 
 
 @function

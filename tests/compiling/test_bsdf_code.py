@@ -16,6 +16,8 @@ from artist_py.scene.tables import Needs, Spectra, material_dtype
 TELLTALES = {
     "diffuse": "square_to_cosine_hemisphere",
     "oren_nayar": "single_albedo",
+    "phong": "square_to_power_cosine",
+    "plastic": "colour_below",
     "conductor": "fresnel_conductor",
     "dielectric": "fresnel_dielectric",
     "thin_dielectric": "slab_reflectance",
@@ -30,7 +32,7 @@ def scatter(needs, materials, spectra, wavelengths, wo, wi, ratio):
         needs, materials[0], reflectance, spectra, wavelengths, wo, 0.1, 0.2, 0.3, ratio, 1.0, None
     )
     f = evaluate_bsdf(needs, materials[0], reflectance, spectra, wavelengths, wo, wi)
-    return s.weight + f, s.pdf + pdf_bsdf(needs, materials[0], wo, wi)
+    return s.weight + f, s.pdf + pdf_bsdf(needs, materials[0], reflectance, spectra, wavelengths, wo, wi)
 
 
 def compiled_code(needs, ratio=None):

@@ -17,6 +17,7 @@ from bsdf_cases import (
     STRATA,
     WAVELENGTHS,
     WHITE,
+    density,
     direction,
     evaluate,
     materials,
@@ -28,7 +29,6 @@ from bsdf_cases import (
 
 from artist_py.bsdf.dispatch import (
     is_delta_bsdf,
-    pdf_bsdf,
     reflectance_bsdf,
 )
 from artist_py.core.fresnel import fresnel_conductor, fresnel_dielectric, slab_reflectance
@@ -40,6 +40,8 @@ from artist_py.scene.tables import (
     MIRROR,
     OREN_NAYAR,
     PASS_THROUGH,
+    PHONG,
+    PLASTIC,
     THIN_DIELECTRIC,
 )
 
@@ -52,9 +54,9 @@ class TestDeltaKinds:
         table = materials(kind)
         assert is_delta_bsdf(table[0])
         assert not evaluate(table, direction(30.0), direction(30.0, 0.7 + math.pi)).any()
-        assert pdf_bsdf(ALL, table[0], direction(30.0), direction(150.0)) == 0.0
+        assert density(table, direction(30.0), direction(150.0)) == 0.0
 
-    @pytest.mark.parametrize("kind", [DIFFUSE, OREN_NAYAR])
+    @pytest.mark.parametrize("kind", [DIFFUSE, OREN_NAYAR, PHONG, PLASTIC])
     def test_kinds_with_a_density_are_no_delta(self, kind):
         assert not is_delta_bsdf(materials(kind)[0])
 

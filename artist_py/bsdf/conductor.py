@@ -11,19 +11,21 @@ pdf_conductor = pdf_delta
 
 
 @function
-def sample_conductor(needed, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk):
+def sample_conductor(
+    needed, material, reflectance, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+):
     """The mirrored direction."""
     if needed is None:
         return absorption(wo, wavelengths, ratio)
-    weight = reflectance_conductor(needed, material, spectra, wavelengths, wo, ior_outside)
+    weight = reflectance_conductor(needed, material, reflectance, spectra, wavelengths, wo, ior_outside)
     return delta_sample(reflect(wo), weight, 1.0, 1.0, ratio)
 
 
 @function
-def reflectance_conductor(needed, material, spectra, wavelengths, wo, ior_outside):
+def reflectance_conductor(needed, material, reflectance, spectra, wavelengths, wo, ior_outside):
     """Share of the light from `wo` that is scattered, in [0, 1]; a metal in glass reflects less than one in air."""
     if needed is None:
         return black(wavelengths)
     eta = spectrum_at(spectra, material.eta, wavelengths) / ior_outside
     k = spectrum_at(spectra, material.absorption, wavelengths) / ior_outside
-    return spectrum_at(spectra, material.reflectance, wavelengths) * fresnel_conductor(wo.z, eta, k)
+    return reflectance * fresnel_conductor(wo.z, eta, k)

@@ -21,7 +21,9 @@ pdf_dielectric = pdf_delta
 
 
 @function
-def sample_dielectric(needed, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk):
+def sample_dielectric(
+    needed, material, reflectance, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+):
     """The mirrored or the refracted direction.
 
     `light_walk` is `None` on a walk from the eye, which scales radiance by (n_o / n_i)^2 at a refraction.
@@ -31,11 +33,11 @@ def sample_dielectric(needed, material, spectra, wavelengths, wo, u, v, w, ratio
     if is_dispersive(ratio, material, ior_outside):
         return sample_dispersive(ratio, material, spectra, wavelengths, wo, w, ior_outside, light_walk)
     eta = relative_ior(material.ior, lane_of(ior_outside, 0), wo)
-    reflectance, cos_theta_t = fresnel_dielectric(abs(wo.z), eta)
-    if w < reflectance:
-        return delta_sample(reflect(wo), splat(wavelengths, 1.0), reflectance, 1.0, ratio)
+    fresnel, cos_theta_t = fresnel_dielectric(abs(wo.z), eta)
+    if w < fresnel:
+        return delta_sample(reflect(wo), splat(wavelengths, 1.0), fresnel, 1.0, ratio)
     weight = splat(wavelengths, radiance_scale(light_walk, eta))
-    return delta_sample(refract(wo, eta, cos_theta_t), weight, 1.0 - reflectance, eta, ratio)
+    return delta_sample(refract(wo, eta, cos_theta_t), weight, 1.0 - fresnel, eta, ratio)
 
 
 @function
@@ -110,7 +112,7 @@ def reflectance_lanes(material, spectra, wavelengths, wo, ior_outside):
 
 
 @function
-def reflectance_dielectric(needed, material, spectra, wavelengths, wo, ior_outside):
+def reflectance_dielectric(needed, material, reflectance, spectra, wavelengths, wo, ior_outside):
     """Share of the light from `wo` that is scattered: all of it."""
     if needed is None:
         return black(wavelengths)

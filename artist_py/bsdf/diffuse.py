@@ -1,27 +1,28 @@
 """The ideal diffuse reflector of Lambert: f = reflectance / pi."""
 
-from ..core.spectra import black, spectrum_at
+from ..core.spectra import black
 from ..core.warp import INV_PI, square_to_cosine_hemisphere
 from ..jit import function
 from .types import BsdfSample, absorption
 
 
 @function
-def sample_diffuse(needed, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk):
+def sample_diffuse(
+    needed, material, reflectance, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+):
     """A direction of density cos / pi."""
     if needed is None:
         return absorption(wo, wavelengths, ratio)
     wi = square_to_cosine_hemisphere(u, v)
-    weight = spectrum_at(spectra, material.reflectance, wavelengths)
-    return BsdfSample(wi, weight, wi.z * INV_PI, wo.z * INV_PI, 1.0, False, ratio)
+    return BsdfSample(wi, reflectance, wi.z * INV_PI, wo.z * INV_PI, 1.0, False, ratio)
 
 
 @function
-def evaluate_diffuse(needed, material, spectra, wavelengths, wo, wi):
+def evaluate_diffuse(needed, material, reflectance, spectra, wavelengths, wo, wi):
     """f, sr^-1."""
     if needed is None:
         return black(wavelengths)
-    return spectrum_at(spectra, material.reflectance, wavelengths) * INV_PI
+    return reflectance * INV_PI
 
 
 @function
@@ -33,8 +34,8 @@ def pdf_diffuse(needed, material, wo, wi):
 
 
 @function
-def reflectance_diffuse(needed, material, spectra, wavelengths, wo, ior_outside):
+def reflectance_diffuse(needed, material, reflectance, spectra, wavelengths, wo, ior_outside):
     """Share of the light from `wo` that is scattered, in [0, 1]."""
     if needed is None:
         return black(wavelengths)
-    return spectrum_at(spectra, material.reflectance, wavelengths)
+    return reflectance

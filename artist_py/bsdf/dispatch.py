@@ -7,21 +7,28 @@ not two-sided.
 """
 
 from ..core.spectra import black
-from ..core.vector import vec3
+from ..core.vector import lane_max, vec3
 from ..jit import function
-from ..scene.tables import CONDUCTOR, DIELECTRIC, DIFFUSE, MIRROR, OREN_NAYAR, PASS_THROUGH, THIN_DIELECTRIC
+from ..scene.tables import CONDUCTOR, DIELECTRIC, MIRROR, PASS_THROUGH, PHONG, PLASTIC, THIN_DIELECTRIC
 from .conductor import reflectance_conductor, sample_conductor
+from .connectable import (
+    evaluate_connectable,
+    pdf_connectable,
+    reflectance_connectable,
+    sample_connectable,
+)
 from .dielectric import reflectance_dielectric, sample_dielectric
-from .diffuse import evaluate_diffuse, pdf_diffuse, reflectance_diffuse, sample_diffuse
 from .mirror import reflectance_mirror, sample_mirror
-from .oren_nayar import evaluate_oren_nayar, pdf_oren_nayar, reflectance_oren_nayar, sample_oren_nayar
 from .pass_through import reflectance_pass_through, sample_pass_through
+from .phong import bound_phong
 from .thin_dielectric import reflectance_thin_dielectric, sample_thin_dielectric
 from .types import BsdfSample, absorption
 
 
 @function
-def sample_bsdf(needs, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk):
+def sample_bsdf(
+    needs, material, reflectance, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+):
     """A `BsdfSample` for `wo`, from the three uniform numbers `u`, `v`, `w`.
 
     `ratio` is the running r of theory (2.6), or `None` in scenes without dispersion. `ior_outside` is the
@@ -31,12 +38,23 @@ def sample_bsdf(needs, material, spectra, wavelengths, wo, u, v, w, ratio, ior_o
     """
     if is_transmissive(material):
         return _sample_transmissive(
-            needs, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+            needs, material, reflectance, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
         )
     if is_black(needs.one_sided, material, wo):
         return absorption(wo, wavelengths, ratio)
     sample = _sample_reflective(
-        needs, material, spectra, wavelengths, _turned(wo, wo), u, v, w, ratio, ior_outside, light_walk
+        needs,
+        material,
+        reflectance,
+        spectra,
+        wavelengths,
+        _turned(wo, wo),
+        u,
+        v,
+        w,
+        ratio,
+        ior_outside,
+        light_walk,
     )
     return BsdfSample(
         _turned(sample.wi, wo),
@@ -50,117 +68,189 @@ def sample_bsdf(needs, material, spectra, wavelengths, wo, u, v, w, ratio, ior_o
 
 
 @function
-def _sample_reflective(needs, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk):
+def _sample_reflective(
+    needs, material, reflectance, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+):
     kind = material.kind
-    if kind == DIFFUSE:
-        return sample_diffuse(
-            needs.diffuse, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
-        )
-    if kind == OREN_NAYAR:
-        return sample_oren_nayar(
-            needs.oren_nayar, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+    if not is_delta_bsdf(material):
+        return sample_connectable(
+            needs, material, reflectance, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
         )
     if kind == MIRROR:
         return sample_mirror(
-            needs.mirror, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+            needs.mirror,
+            material,
+            reflectance,
+            spectra,
+            wavelengths,
+            wo,
+            u,
+            v,
+            w,
+            ratio,
+            ior_outside,
+            light_walk,
         )
     if kind == CONDUCTOR:
         return sample_conductor(
-            needs.conductor, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+            needs.conductor,
+            material,
+            reflectance,
+            spectra,
+            wavelengths,
+            wo,
+            u,
+            v,
+            w,
+            ratio,
+            ior_outside,
+            light_walk,
         )
     return absorption(wo, wavelengths, ratio)
 
 
 @function
-def _sample_transmissive(needs, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk):
+def _sample_transmissive(
+    needs, material, reflectance, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+):
     kind = material.kind
     if kind == DIELECTRIC:
         return sample_dielectric(
-            needs.dielectric, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+            needs.dielectric,
+            material,
+            reflectance,
+            spectra,
+            wavelengths,
+            wo,
+            u,
+            v,
+            w,
+            ratio,
+            ior_outside,
+            light_walk,
         )
     if kind == THIN_DIELECTRIC:
         return sample_thin_dielectric(
-            needs.thin_dielectric, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+            needs.thin_dielectric,
+            material,
+            reflectance,
+            spectra,
+            wavelengths,
+            wo,
+            u,
+            v,
+            w,
+            ratio,
+            ior_outside,
+            light_walk,
         )
     if kind == PASS_THROUGH:
         return sample_pass_through(
-            needs.pass_through, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+            needs.pass_through,
+            material,
+            reflectance,
+            spectra,
+            wavelengths,
+            wo,
+            u,
+            v,
+            w,
+            ratio,
+            ior_outside,
+            light_walk,
         )
     return absorption(wo, wavelengths, ratio)
 
 
 @function
-def evaluate_bsdf(needs, material, spectra, wavelengths, wo, wi):
+def evaluate_bsdf(needs, material, reflectance, spectra, wavelengths, wo, wi):
     """f(wo, wi) without the cosine, sr^-1; symmetric in its directions, and zero for what has delta lobes only."""
-    if wo.z * wi.z <= 0.0 or is_black(needs.one_sided, material, wo):
+    if wo.z * wi.z <= 0.0 or is_delta_bsdf(material) or is_black(needs.one_sided, material, wo):
         return black(wavelengths)
-    kind = material.kind
-    if kind == DIFFUSE:
-        return evaluate_diffuse(
-            needs.diffuse, material, spectra, wavelengths, _turned(wo, wo), _turned(wi, wo)
-        )
-    if kind == OREN_NAYAR:
-        return evaluate_oren_nayar(
-            needs.oren_nayar, material, spectra, wavelengths, _turned(wo, wo), _turned(wi, wo)
-        )
-    return black(wavelengths)
+    return evaluate_connectable(
+        needs, material, reflectance, spectra, wavelengths, _turned(wo, wo), _turned(wi, wo)
+    )
 
 
 @function
-def pdf_bsdf(needs, material, wo, wi):
-    """Density of `sample_bsdf` at `wi` for `wo`, sr^-1; with swapped directions, that of the reverse walk."""
-    if wo.z * wi.z <= 0.0 or is_black(needs.one_sided, material, wo):
+def pdf_bsdf(needs, material, reflectance, spectra, wavelengths, wo, wi):
+    """Density of `sample_bsdf` at `wi` for `wo`, sr^-1; with swapped directions, that of the reverse walk.
+
+    Where there are delta lobes as well, it holds the probability that none of these is sampled.
+    """
+    if wo.z * wi.z <= 0.0 or is_delta_bsdf(material) or is_black(needs.one_sided, material, wo):
         return 0.0
-    kind = material.kind
-    if kind == DIFFUSE:
-        return pdf_diffuse(needs.diffuse, material, _turned(wo, wo), _turned(wi, wo))
-    if kind == OREN_NAYAR:
-        return pdf_oren_nayar(needs.oren_nayar, material, _turned(wo, wo), _turned(wi, wo))
-    return 0.0
+    return pdf_connectable(
+        needs, material, reflectance, spectra, wavelengths, _turned(wo, wo), _turned(wi, wo)
+    )
 
 
 @function
-def reflectance_bsdf(needs, material, spectra, wavelengths, wo, ior_outside):
+def reflectance_bsdf(needs, material, reflectance, spectra, wavelengths, wo, ior_outside):
     """Share of the light from `wo` that is scattered into all directions, in [0, 1]."""
     if is_transmissive(material):
-        return _transmissive_reflectance(needs, material, spectra, wavelengths, wo, ior_outside)
+        return _transmissive_reflectance(needs, material, reflectance, spectra, wavelengths, wo, ior_outside)
     if is_black(needs.one_sided, material, wo):
         return black(wavelengths)
-    return _reflective_reflectance(needs, material, spectra, wavelengths, _turned(wo, wo), ior_outside)
+    return _reflective_reflectance(
+        needs, material, reflectance, spectra, wavelengths, _turned(wo, wo), ior_outside
+    )
 
 
 @function
-def _reflective_reflectance(needs, material, spectra, wavelengths, wo, ior_outside):
+def _reflective_reflectance(needs, material, reflectance, spectra, wavelengths, wo, ior_outside):
     kind = material.kind
-    if kind == DIFFUSE:
-        return reflectance_diffuse(needs.diffuse, material, spectra, wavelengths, wo, ior_outside)
-    if kind == OREN_NAYAR:
-        return reflectance_oren_nayar(needs.oren_nayar, material, spectra, wavelengths, wo, ior_outside)
+    if not is_delta_bsdf(material):
+        return reflectance_connectable(needs, material, reflectance, spectra, wavelengths, wo, ior_outside)
     if kind == MIRROR:
-        return reflectance_mirror(needs.mirror, material, spectra, wavelengths, wo, ior_outside)
+        return reflectance_mirror(needs.mirror, material, reflectance, spectra, wavelengths, wo, ior_outside)
     if kind == CONDUCTOR:
-        return reflectance_conductor(needs.conductor, material, spectra, wavelengths, wo, ior_outside)
+        return reflectance_conductor(
+            needs.conductor, material, reflectance, spectra, wavelengths, wo, ior_outside
+        )
     return black(wavelengths)
 
 
 @function
-def _transmissive_reflectance(needs, material, spectra, wavelengths, wo, ior_outside):
+def _transmissive_reflectance(needs, material, reflectance, spectra, wavelengths, wo, ior_outside):
     kind = material.kind
     if kind == DIELECTRIC:
-        return reflectance_dielectric(needs.dielectric, material, spectra, wavelengths, wo, ior_outside)
+        return reflectance_dielectric(
+            needs.dielectric, material, reflectance, spectra, wavelengths, wo, ior_outside
+        )
     if kind == THIN_DIELECTRIC:
         return reflectance_thin_dielectric(
-            needs.thin_dielectric, material, spectra, wavelengths, wo, ior_outside
+            needs.thin_dielectric, material, reflectance, spectra, wavelengths, wo, ior_outside
         )
     if kind == PASS_THROUGH:
-        return reflectance_pass_through(needs.pass_through, material, spectra, wavelengths, wo, ior_outside)
+        return reflectance_pass_through(
+            needs.pass_through, material, reflectance, spectra, wavelengths, wo, ior_outside
+        )
     return black(wavelengths)
+
+
+@function
+def survival_bsdf(needs, material, reflectance, spectra, wavelengths):
+    """Probability in [0, 1] for a walk to go on after the material: the most that it scatters of light from anywhere.
+
+    It is the same for both walks and for all directions, so that MIS densities may hold it (theory 1.8).
+    """
+    if material.kind == PLASTIC or material.kind >= DIELECTRIC:
+        return 1.0
+    if material.kind == PHONG:
+        return _lane_survival(bound_phong(needs.phong, material, reflectance, spectra, wavelengths))
+    return _lane_survival(reflectance)
+
+
+@function
+def _lane_survival(reflectance):
+    return min(1.0, float(lane_max(reflectance)))
 
 
 @function
 def is_delta_bsdf(material):
     """Whether the material has delta lobes only, so that nothing can be connected to it or merged at it."""
-    return material.kind != DIFFUSE and material.kind != OREN_NAYAR
+    return material.kind >= MIRROR
 
 
 @function

@@ -1,7 +1,7 @@
 """An ideal mirror: the reflected direction, coloured by a reflectance."""
 
 from ..core.frame import reflect
-from ..core.spectra import black, spectrum_at
+from ..core.spectra import black
 from ..jit import function
 from .types import absorption, delta_sample, evaluate_delta, pdf_delta
 
@@ -10,16 +10,18 @@ pdf_mirror = pdf_delta
 
 
 @function
-def sample_mirror(needed, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk):
+def sample_mirror(
+    needed, material, reflectance, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+):
     """The mirrored direction."""
     if needed is None:
         return absorption(wo, wavelengths, ratio)
-    return delta_sample(reflect(wo), spectrum_at(spectra, material.reflectance, wavelengths), 1.0, 1.0, ratio)
+    return delta_sample(reflect(wo), reflectance, 1.0, 1.0, ratio)
 
 
 @function
-def reflectance_mirror(needed, material, spectra, wavelengths, wo, ior_outside):
+def reflectance_mirror(needed, material, reflectance, spectra, wavelengths, wo, ior_outside):
     """Share of the light from `wo` that is scattered, in [0, 1]."""
     if needed is None:
         return black(wavelengths)
-    return spectrum_at(spectra, material.reflectance, wavelengths)
+    return reflectance

@@ -12,7 +12,7 @@ grows from 0, Lambert's reflector, to 0.78 at 90 degrees.
 
 import math
 
-from ..core.spectra import black, spectrum_at
+from ..core.spectra import black
 from ..core.vector import dot
 from ..core.warp import INV_PI, square_to_cone, square_to_cosine_hemisphere
 from ..jit import function
@@ -87,7 +87,9 @@ def uniform_share(r, wo):
 
 
 @function
-def sample_oren_nayar(needed, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk):
+def sample_oren_nayar(
+    needed, material, reflectance, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+):
     """A direction of density `mixture_pdf`."""
     if needed is None:
         return absorption(wo, wavelengths, ratio)
@@ -96,21 +98,19 @@ def sample_oren_nayar(needed, material, spectra, wavelengths, wo, u, v, w, ratio
         wi = square_to_cone(u, v, 1.0)
     else:
         wi = square_to_cosine_hemisphere(u, v)
-    rho = spectrum_at(spectra, material.reflectance, wavelengths)
     pdf = mixture_pdf(r, wo, wi)
     if pdf <= 0.0:
         return absorption(wo, wavelengths, ratio)
-    weight = scattering(rho, r, wo, wi) * (wi.z / pdf)
+    weight = scattering(reflectance, r, wo, wi) * (wi.z / pdf)
     return BsdfSample(wi, weight, pdf, mixture_pdf(r, wi, wo), 1.0, False, ratio)
 
 
 @function
-def evaluate_oren_nayar(needed, material, spectra, wavelengths, wo, wi):
+def evaluate_oren_nayar(needed, material, reflectance, spectra, wavelengths, wo, wi):
     """f, sr^-1."""
     if needed is None:
         return black(wavelengths)
-    rho = spectrum_at(spectra, material.reflectance, wavelengths)
-    return scattering(rho, slope_ratio(material.roughness), wo, wi)
+    return scattering(reflectance, slope_ratio(material.roughness), wo, wi)
 
 
 @function
@@ -122,11 +122,10 @@ def pdf_oren_nayar(needed, material, wo, wi):
 
 
 @function
-def reflectance_oren_nayar(needed, material, spectra, wavelengths, wo, ior_outside):
+def reflectance_oren_nayar(needed, material, reflectance, spectra, wavelengths, wo, ior_outside):
     """Share of the light from `wo` that is scattered, in [0, 1]; the exact integral of f cos."""
     if needed is None:
         return black(wavelengths)
-    rho = spectrum_at(spectra, material.reflectance, wavelengths)
     r = slope_ratio(material.roughness)
     once = single_albedo(wo.z, r)
-    return rho * once + multiple_reflectance(rho, mean_albedo(r)) * (1.0 - once)
+    return reflectance * once + multiple_reflectance(reflectance, mean_albedo(r)) * (1.0 - once)

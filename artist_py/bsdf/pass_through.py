@@ -10,7 +10,9 @@ pdf_pass_through = pdf_delta
 
 
 @function
-def sample_pass_through(needed, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk):
+def sample_pass_through(
+    needed, material, reflectance, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+):
     """The opposite direction."""
     if needed is None:
         return absorption(wo, wavelengths, ratio)
@@ -18,7 +20,7 @@ def sample_pass_through(needed, material, spectra, wavelengths, wo, u, v, w, rat
 
 
 @function
-def reflectance_pass_through(needed, material, spectra, wavelengths, wo, ior_outside):
+def reflectance_pass_through(needed, material, reflectance, spectra, wavelengths, wo, ior_outside):
     """Share of the light from `wo` that is scattered: all of it."""
     if needed is None:
         return black(wavelengths)

@@ -14,7 +14,7 @@ pdf_thin_dielectric = pdf_delta
 
 @function
 def sample_thin_dielectric(
-    needed, material, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+    needed, material, reflectance, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
 ):
     """The mirrored or the opposite direction, after any number of reflections inside.
 
@@ -23,11 +23,11 @@ def sample_thin_dielectric(
     """
     if needed is None:
         return absorption(wo, wavelengths, ratio)
-    reflectance = sheet_reflectance(ratio, material, spectra, wavelengths, wo, ior_outside)
-    probability = lane_sum(reflectance) / lane_count(reflectance)
+    mirrored = sheet_reflectance(ratio, material, spectra, wavelengths, wo, ior_outside)
+    probability = lane_sum(mirrored) / lane_count(mirrored)
     if w < probability:
-        return delta_sample(reflect(wo), reflectance / probability, probability, 1.0, ratio)
-    return delta_sample(-wo, (1.0 - reflectance) / (1.0 - probability), 1.0 - probability, 1.0, ratio)
+        return delta_sample(reflect(wo), mirrored / probability, probability, 1.0, ratio)
+    return delta_sample(-wo, (1.0 - mirrored) / (1.0 - probability), 1.0 - probability, 1.0, ratio)
 
 
 @function
@@ -49,7 +49,7 @@ def dispersive_face(ratio, material, spectra, wavelengths, wo, ior_outside):
 
 
 @function
-def reflectance_thin_dielectric(needed, material, spectra, wavelengths, wo, ior_outside):
+def reflectance_thin_dielectric(needed, material, reflectance, spectra, wavelengths, wo, ior_outside):
     """Share of the light from `wo` that is scattered: all of it."""
     if needed is None:
         return black(wavelengths)

@@ -1,6 +1,7 @@
 """What every BSDF returns; all directions are unit, in the shading frame, and point away from the surface.
 
-Every kind has `sample_*`, `evaluate_*`, `pdf_*` and `reflectance_*` of the same arguments; kinds that only
+Every kind has `sample_*`, `evaluate_*`, `pdf_*` and `reflectance_*` of the same arguments; `reflectance` is that of
+the material at the point (reflectance.py), and kinds without one do not look at it. Kinds that only
 reflect see `wo` above the surface (`dispatch.py` turns the other side over), kinds that transmit see either
 side.
 """
@@ -44,7 +45,7 @@ def delta_sample(wi, weight, probability, eta, ratio):
 
 
 @function
-def evaluate_delta(needed, material, spectra, wavelengths, wo, wi):
+def evaluate_delta(needed, material, reflectance, spectra, wavelengths, wo, wi):
     """f of a BSDF of delta lobes only: zero for any two given directions, sr^-1."""
     return black(wavelengths)
 

@@ -54,28 +54,24 @@ def trace_eye_subpath(  # noqa: C901, PLR0915 - one loop, a line or two per step
         if material.kind == ABSORBER or length >= limits.max_length:
             break
         partial = arrived
-        vertex = vertex_at(scene, surface, path)
+        vertex = vertex_at(scene, surface, path, wavelengths)
         survival = local_survival(scene, vertex, wavelengths)
         pair = FIRST_VERTEX + (length - 1) * PAIRS_PER_VERTEX
         u_select, u_lobe = random_pair(stream, pair + CHOICE)
         if not is_delta_bsdf(material):
-            is_specular = False
-            begins_specular = begins_specular and length > 1
             joined = connect(
                 setup, index, vertex, partial, survival, length, place, path, stream, pair + EMITTER, u_select
             )
             radiance = radiance + path.throughput * joined.value
             shadow_rays += joined.rays
             _store(setup.stores.eye, thread, surface, path, partial, length, index, film_weight)
-            if _ends_at_merge(method.techniques.merge_once):
-                break
-        if (
-            _is_done(method.techniques, begins_specular)
-            or random_number(stream, ROULETTE + length) >= survival
-        ):
+        if random_number(stream, ROULETTE + length) >= survival:
             break
         step = scatter(scene, vertex, path, wavelengths, stream, pair + BSDF, u_lobe, None)
-        if step.path.is_absorbed:
+        # Not the material but the lobe counts: one of a plastic's two can neither be connected nor merged.
+        is_specular = is_specular and step.is_delta
+        begins_specular = begins_specular and (length > 1 or step.is_delta)
+        if step.path.is_absorbed or is_done(method.techniques, is_specular, begins_specular):
             break
         partial = partial_after(method.counts, partial, step, surface, survival, cos_in)
         path = survived(step.path, survival)
@@ -123,7 +119,7 @@ def _connect_all(needed, setup, index, vertex, partial, survival, length, place,
     last = setup.stores.paths[end - 1]
     for i in range(setup.stores.paths[first].first_vertex, last.first_vertex + last.n_vertices):
         row = setup.stores.light.records[i]
-        stored = load_vertex(scene.needs.smooth_triangles, row, setup.sensing.zero)
+        stored = load_vertex(scene, row, setup.sensing.zero, wavelengths)
         if stored.length + length + 1 > limits.max_length:
             continue
         light_survival = local_survival(scene, stored.vertex, wavelengths)
@@ -145,13 +141,13 @@ def _store(pool, thread, surface, path, partial, length, index, film_weight):
 
 
 @function
-def _ends_at_merge(merge_once):
-    return merge_once is not None
+def is_done(techniques, is_specular, begins_specular):
+    """Whether nothing is to be found further along.
 
-
-@function
-def _is_done(techniques, begins_specular):
-    """Whether nothing is to be found further along: with light tracing alone, once the first vertex is connectable."""
+    Photon mapping ends at the first lobe that is not specular, light tracing where that is the first of all.
+    """
+    if techniques.merge_once is not None:
+        return not is_specular
     return _finds_nothing(techniques.nee, techniques.connect, techniques.merge) and not begins_specular
 
 

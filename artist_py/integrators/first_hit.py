@@ -81,9 +81,11 @@ def _add_albedo(scene, camera, sensing, stream, surface, origin, direction, row,
         return
     wavelengths, weights = wavelengths_of_path(sensing, stream, WAVELENGTH)
     path = start_path(origin, direction, sensing, camera.media)
-    vertex = vertex_at(scene, surface, path)
+    vertex = vertex_at(scene, surface, path, wavelengths)
     outside = ior_around(scene.needs.media, scene, material, vertex.wo.z > 0.0, camera.media, wavelengths)
-    albedo = reflectance_bsdf(scene.needs, material, scene.spectra, wavelengths, vertex.wo, outside)
+    albedo = reflectance_bsdf(
+        scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, vertex.wo, outside
+    )
     red, green, blue = rgb_of(scene.spectra, albedo * weights, wavelengths)
     hits.albedo[row, column, 0] += red
     hits.albedo[row, column, 1] += green

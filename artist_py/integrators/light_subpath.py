@@ -90,7 +90,7 @@ def _walk(  # noqa: C901 - one loop, a line or two per step of the walk
             break
         cos_in = abs(dot(path.direction, surface.normal))
         partial = _arrived(scene, emitter, start, path, surface, partial, length, cos_in)
-        vertex = vertex_at(scene, surface, path)
+        vertex = vertex_at(scene, surface, path, wavelengths)
         if not vertex.is_sampled_back:  # no eye walk could go back there
             break
         survival = local_survival(scene, vertex, wavelengths)

@@ -26,7 +26,7 @@ def gather(setup, grid, merging, progress, image):
             break
         for index in range(chunk * CHUNK, chunk * CHUNK + eye.used[chunk]):
             record = eye.records[index]
-            stored = load_vertex(scene.needs.smooth_triangles, record, sensing.zero)
+            stored = load_vertex(scene, record, sensing.zero, wavelengths)
             survival = local_survival(scene, stored.vertex, wavelengths)
             place = Place(record.pixel // width, record.pixel % width, wavelengths, weights)
             merged = merge_at(

@@ -116,17 +116,16 @@ def choice_numbers(scene, stream, pair):
 @function
 def _choice_numbers(emitters, needs, stream, pair):
     if emitters is None:
-        return _numbers_if(None, needs.dielectric, needs.thin_dielectric, stream, pair)
-    return _numbers_if(emitters.alias, needs.dielectric, needs.thin_dielectric, stream, pair)
+        return _numbers_if(None, needs.lobes, stream, pair)
+    return _numbers_if(emitters.alias, needs.lobes, stream, pair)
 
 
 @function
-def _numbers_if(alias, dielectric, thin_dielectric, stream, pair):
+def _numbers_if(alias, lobes, stream, pair):
     # Nested, because numba prunes a test for None but not a conjunction.
     if alias is None:  # noqa: SIM102
-        if dielectric is None:  # noqa: SIM102
-            if thin_dielectric is None:
-                return 0.0, 0.0
+        if lobes is None:
+            return 0.0, 0.0
     return random_pair(stream, pair)
 
 
@@ -155,7 +154,7 @@ def path_radiance(scene, limits, sensing, stream, origin, direction, media, plac
         if length >= limits.max_length or material.kind == ABSORBER:
             break
         pair = FIRST_VERTEX + (length - 1) * PAIRS_PER_VERTEX
-        vertex = vertex_at(scene, surface, path)
+        vertex = vertex_at(scene, surface, path, wavelengths)
         u_select, u_lobe = choice_numbers(scene, stream, pair + CHOICE)
         if not is_delta_bsdf(material):
             direct = connect_to_emitter(scene, vertex, wavelengths, stream, pair + EMITTER, u_select)

@@ -50,6 +50,7 @@ def memory_estimate(compiled, settings):
         "geometry": sum(array.nbytes for array in arrays) + (emitters.records.nbytes if emitters else 0),
         "acceleration structure": BYTES_PER_FACE * faces,
         "spectra": compiled.spectra.nbytes,
+        "textures": sum(image.nbytes for image in compiled.texture_images),
         "eye vertices": pixels * _bytes_per_eye_path(compiled.graph.render),
         "light vertices": round(pixels * light_paths * _bytes_per_light_path(compiled.graph.render)),
     }

@@ -17,6 +17,7 @@ from artist_py.scene.compile_emitters import EmitterCompiler
 from artist_py.scene.compile_geometry import GeometryCompiler, collect_parts, space_of
 from artist_py.scene.compile_lights import method_warnings
 from artist_py.scene.compile_materials import NEED_NAMES, MaterialCompiler, SpectrumRows
+from artist_py.scene.compile_textures import check_coordinates
 from artist_py.transport.initial_media import media_at
 
 VISIBLE = 380, 780  # nm
@@ -31,6 +32,9 @@ EMITTER_NEEDS = {
     tables.SUN_EMITTER: "distant_emitters",
     tables.ENVIRONMENT_EMITTER: "environments",
 }
+WITH_LOBES = {
+    tables.OREN_NAYAR, tables.PHONG, tables.PLASTIC, tables.DIELECTRIC, tables.THIN_DIELECTRIC,
+}  # fmt: skip
 MANY_DIELECTRICS = 2000  # with more of them it is taken for granted that some touch
 
 
@@ -50,6 +54,7 @@ class CompiledScene:
     matrices: tuple
     embree: Any  # keeps the BVH alive
     warnings: list
+    texture_images: list  # `ImageSummary` of each that textures use
     reasons: dict = field(default_factory=dict)
     seconds: float = 0.0
 
@@ -92,7 +97,7 @@ def compile_scene(graph, threads=None):
         tables.Spectra(None, Table(dense), float(first)),
         emitter_table,
         Table(media) if media is not None else None,
-        None,
+        materials.textures.table(),
         needs,
     )
     camera = compile_camera(graph.camera, graph.film, space)
@@ -113,7 +118,8 @@ def compile_scene(graph, threads=None):
         space,
         camera_matrices(graph.camera, graph.film),
         embree,
-        geometry.warnings,
+        geometry.warnings + materials.textures.warnings,
+        materials.textures.images,
         seconds=time.perf_counter() - begun,
     )
 
@@ -134,6 +140,7 @@ def _lights_and_materials(graph, geometry, spectra):
     for build in (
         lambda: EmitterCompiler(geometry, spectra, graph.emitters),
         lambda: MaterialCompiler(graph, used, spectra),
+        lambda: check_coordinates(graph, geometry.placed),
     ):
         try:
             result.append(build())
@@ -141,7 +148,7 @@ def _lights_and_materials(graph, geometry, spectra):
             problems.extend(error.problems)
     if problems:
         raise SceneError(problems)
-    return result
+    return result[:2]
 
 
 def _dielectrics_touch(geometry, placements, materials):
@@ -168,6 +175,7 @@ def _needs(graph, geometry, materials, emitters, media):
         "surfaceless_emitters": bool((lights["kind"] >= tables.POINT_EMITTER).any()),
         "environment_images": bool((lights["image"] >= 0).any()),
         "hidden_emitters": bool((lights["visible"] == 0).any()),
+        "lobes": bool(used & WITH_LOBES),
         "dispersion": bool(materials.table["is_dispersive"].any()),
         "media": media is not None,
         "triangles": bool(kinds & {tables.TRIANGLES, tables.SMOOTH_TRIANGLES}),
@@ -176,6 +184,7 @@ def _needs(graph, geometry, materials, emitters, media):
         "quadrics": tables.QUADRICS in kinds,
         "instances": bool(graph.instances),
         "one_sided": bool((materials.table["two_sided"][1:] == 0).any()),
+        "textures": bool((materials.table["texture"] >= 0).any()),
         "shared_wavelengths": graph.render.wavelengths == "shared",
     }
     present |= {name for name, condition in conditions.items() if condition}

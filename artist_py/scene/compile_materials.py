@@ -7,8 +7,9 @@ import numpy as np
 from artist_py.errors import SceneError
 from artist_py.scene import graph as scene_graph
 from artist_py.scene import tables
-from artist_py.scene.optics import ior_table, is_dispersive, metal_table
-from artist_py.scene.spectra import check_reflectance, tabulate
+from artist_py.scene.compile_textures import TextureCompiler, is_textured, reflectance_row
+from artist_py.scene.optics import diffuse_transmittance, ior_table, is_dispersive, metal_table
+from artist_py.scene.spectra import ROUNDING, tabulate
 from artist_py.scene.where import problem
 
 MAX_MEDIA = 127  # slots of transport/media.py have eight bits
@@ -16,6 +17,8 @@ MAX_MEDIA = 127  # slots of transport/media.py have eight bits
 KINDS = {
     scene_graph.Diffuse: tables.DIFFUSE,
     scene_graph.OrenNayar: tables.OREN_NAYAR,
+    scene_graph.Phong: tables.PHONG,
+    scene_graph.Plastic: tables.PLASTIC,
     scene_graph.Mirror: tables.MIRROR,
     scene_graph.Conductor: tables.CONDUCTOR,
     scene_graph.Dielectric: tables.DIELECTRIC,
@@ -25,6 +28,8 @@ KINDS = {
 NEED_NAMES = {
     tables.DIFFUSE: "diffuse",
     tables.OREN_NAYAR: "oren_nayar",
+    tables.PHONG: "phong",
+    tables.PLASTIC: "plastic",
     tables.MIRROR: "mirror",
     tables.CONDUCTOR: "conductor",
     tables.DIELECTRIC: "dielectric",
@@ -64,7 +69,7 @@ class MaterialCompiler:
     """Fills material and medium rows; `rows` maps names (None: the black absorber) to row numbers."""
 
     def __init__(self, graph, used, spectra):
-        self.spectra, self.problems = spectra, []
+        self.spectra, self.textures, self.problems = spectra, TextureCompiler(spectra), []
         names = [name for name in graph.materials if name in used]
         self.rows = {None: 0, **{name: i + 1 for i, name in enumerate(names)}}
         self.table = np.zeros(len(names) + 1, tables.material_dtype)
@@ -79,31 +84,47 @@ class MaterialCompiler:
         row["kind"] = KINDS[type(material)]
         row["two_sided"] = getattr(material, "two_sided", True)
         try:
-            if hasattr(material, "reflectance"):
-                row["reflectance"] = self._reflectance(material)
-            if isinstance(material, scene_graph.OrenNayar):
-                row["roughness"] = math.radians(material.roughness)
-            if isinstance(material, scene_graph.Conductor):
-                row["eta"], row["absorption"] = self._metal(material)
-            if isinstance(material, scene_graph.Dielectric | scene_graph.ThinDielectric):
-                self._fill_ior(row, material)
+            if is_textured(material):
+                row["texture"] = self.textures.row(material.reflectance)
+            elif hasattr(material, "reflectance"):
+                row["reflectance"] = reflectance_row(
+                    self.spectra, material.reflectance, material, "reflectance"
+                )
+            if fill := self.FILLERS.get(type(material)):
+                fill(self, row, material)
         except SceneError as error:
             self.problems.extend(error.problems)
 
-    def _reflectance(self, material):
-        table = tabulate(material.reflectance, self.spectra.first, self.spectra.last, "reflectance")
-        message = check_reflectance(table, self.spectra.first)
-        if message:
-            raise SceneError([problem(material, "reflectance", message)])
-        return self.spectra.row(np.clip(table, 0.0, 1.0))
+    def _fill_oren_nayar(self, row, material):
+        row["roughness"] = math.radians(material.roughness)
 
-    def _metal(self, material):
+    def _fill_plastic(self, row, material):
+        row["ior"], row["transmittance"] = material.ior, diffuse_transmittance(material.ior)
+
+    def _fill_phong(self, row, material):
+        row["exponent"] = material.exponent
+        row["specular"] = reflectance_row(self.spectra, material.specular, material, "specular")
+        total = self._largest_reflectance(row) + self.spectra.rows[row["specular"]]
+        worst = int(np.argmax(total))
+        if total[worst] > 1.0 + ROUNDING:
+            found = f"found {total[worst]:.6g} at {self.spectra.first + worst} nm"
+            raise SceneError(
+                [problem(material, "specular", f"expected reflectance + specular <= 1, {found}")]
+            )
+
+    def _largest_reflectance(self, row):
+        """The most that a material reflects anywhere, per bin."""
+        if row["texture"] >= 0:
+            return self.textures.largest_reflectance(row["texture"])
+        return self.spectra.rows[row["reflectance"]]
+
+    def _fill_conductor(self, row, material):
         span = self.spectra.first, self.spectra.last
         if material.metal is not None:
             eta, k = metal_table(material.metal, *span, material)
         else:
             eta, k = (tabulate(value, *span, "reflectance") for value in (material.eta, material.k))
-        return self.spectra.row(eta), self.spectra.row(k)
+        row["eta"], row["absorption"] = self.spectra.row(eta), self.spectra.row(k)
 
     def _fill_ior(self, row, material):
         table = ior_table(material.ior, self.spectra.first, self.spectra.last)
@@ -117,6 +138,15 @@ class MaterialCompiler:
                 )
             row["medium"] = len(self.media)
             self.media.append((material.priority, row["eta"], row["ior"]))
+
+    FILLERS = {  # noqa: RUF012 - not changed
+        scene_graph.OrenNayar: _fill_oren_nayar,
+        scene_graph.Phong: _fill_phong,
+        scene_graph.Plastic: _fill_plastic,
+        scene_graph.Conductor: _fill_conductor,
+        scene_graph.Dielectric: _fill_ior,
+        scene_graph.ThinDielectric: _fill_ior,
+    }
 
     def media_table(self):
         """Medium rows (medium_dtype)."""

@@ -10,11 +10,14 @@ from artist_py.scene.identity import settings as effective_settings
 FEATURES = {
     "diffuse": ("Lambertian reflection", "no diffuse material"),
     "oren_nayar": ("rough diffuse reflection", "no oren-nayar material"),
+    "phong": ("Phong's lobe", "no phong material"),
+    "plastic": ("diffuse reflection under a clear coat", "no plastic material"),
     "mirror": ("ideal mirrors", "no mirror material"),
     "conductor": ("smooth metals, complex Fresnel", "no conductor material"),
     "dielectric": ("smooth glass, refraction", "no dielectric material"),
     "thin_dielectric": ("thin panes", "no thin-dielectric material"),
     "pass_through": ("surfaces that light ignores", 'no material of type "none"'),
+    "lobes": ("a choice between lobes", "no material has more than one lobe"),
     "dispersion": (
         "refraction by wavelength, lane densities",
         "no index of refraction depends on wavelength",
@@ -37,7 +40,7 @@ FEATURES = {
     "environment_images": ("environments from images", "no environment has an image"),
     "hidden_emitters": ("emitters that the camera does not see", "every emitter is visible"),
     "one_sided": ("materials that are black from behind", "every material is two-sided"),
-    "textures": ("textures", "no material has a texture"),
+    "textures": ("reflectances that vary over surfaces", "no material has a texture"),
     "shared_wavelengths": ("one set of wavelengths per iteration", "every path has its own wavelengths"),
 }
 
@@ -60,6 +63,7 @@ def describe(compiled, memory):
         "Geometry": _geometry(compiled),
         "Lights": _lights(compiled),
         "Materials": _materials(compiled),
+        **({"Textures": _textures(compiled)} if compiled.scene.textures else {}),
         "Needed": _features(compiled, needed=True),
         "Left out": _features(compiled, needed=False),
         "Memory": _memory(memory),
@@ -103,6 +107,20 @@ def _materials(compiled):
     return rows + ([("defined but not used", str(unused))] if unused else [])
 
 
+def _textures(compiled):
+    colours = {1: "grey", 3: "RGB"}
+    rows = [
+        (image.path, f"{image.width} x {image.height}, {colours[image.channels]}, {_size(image.nbytes)}")
+        for image in compiled.texture_images
+    ]
+    boards = int(np.sum(compiled.scene.textures.records.array["kind"] == tables.CHECKERBOARD))
+    return rows + ([("checkerboards", str(boards))] if boards else [])
+
+
+def _size(size):
+    return f"{size / 2**20:.1f} MiB" if size >= 2**20 else f"{size / 2**10:.1f} KiB"
+
+
 def _features(compiled, needed):
     needs = compiled.scene.needs
     assert set(FEATURES) == set(tables.Needs._fields)  # noqa: S101 - a feature without words would be left out silently
@@ -119,7 +137,10 @@ def _features(compiled, needed):
 
 def _memory(memory):
     rows = [(name, f"{size / 2**20:.1f} MiB") for name, size in memory.items() if size]
-    return [*rows, ("in all", f"{sum(memory.values()) / 2 ** 20:.1f} MiB, and about 200 MiB for Python and kernels")]
+    return [
+        *rows,
+        ("in all", f"{sum(memory.values()) / 2**20:.1f} MiB, and about 200 MiB for Python and kernels"),
+    ]
 
 
 def _flat(table, prefix=""):

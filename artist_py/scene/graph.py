@@ -3,7 +3,7 @@
 Lengths are in scene units, angles in degrees, wavelengths in nm, radiance in W m^-2 sr^-1 nm^-1. A key
 without a default must be given. The converters (`fields.py`) say what a value may be, `problems` what keys
 may not say together. Shapes are in `shape_types.py`, emitters without a shape in `emitter_types.py`, spectra
-in `spectrum_types.py`, transforms in `transforms.py`.
+in `spectrum_types.py`, textures in `texture_types.py`, transforms in `transforms.py`.
 """
 
 import math
@@ -29,17 +29,24 @@ from artist_py.scene.messages import expected, show
 from artist_py.scene.shape_types import SHAPES, Shape, Vector, distance, shape, transform
 from artist_py.scene.spectrum_fields import IndexField, MetalField, SpectrumField
 from artist_py.scene.spectrum_types import Constant, RefractiveIndex, Spectrum
+from artist_py.scene.texture_types import Texture
+from artist_py.scene.texture_types import reflectance as _reflectance
 from artist_py.scene.transforms import are_parallel, direction, normalized, point
 
 FILTER_RADIUS = {"box": 0.5, "tent": 1.0, "gaussian": 1.5, "blackman-harris": 1.5, "mitchell": 2.0}  # pixels
 INTEGRATORS = ("pt", "lt", "bpt", "ppm", "bpm", "vcm", "reference")
-MERGES = ("ppm", "bpm", "vcm", "reference")  # those that need all paths of an iteration to share their wavelengths
+MERGES = (
+    "ppm",
+    "bpm",
+    "vcm",
+    "reference",
+)  # those that need all paths of an iteration to share their wavelengths
 LONGEST_STORED = 1000  # edges of subpaths whose vertices are stored
 # cd/m2 of a flat spectrum of radiance 1: 683.002 lm/W times the integral of ybar.
 WHITE_LUMINANCE = {"CIE 1931 2": 72983.4866019817, "CIE 1964 10": 79680.2951650147}
 
 _count = Number(at_least=1, whole=True)
-_unit_range = SpectrumField(Number(at_least=0, at_most=1))
+_share = SpectrumField(Number(at_least=0, at_most=1))
 _radiance = SpectrumField(Number(at_least=0))
 _positive_spectrum = SpectrumField(Number(above=0))
 
@@ -121,9 +128,13 @@ class Merging(Node):
     radius: float | None = key(Number(above=0), None)  # in bounding radii of the scene; default: 0.003
     radius_pixels: float | None = key(Number(above=0), None)  # instead: pixels, at the distance of look_at
     alpha: float = key(Number(above=0, at_most=1), 0.75)  # how the radius shrinks; 1: it does not
-    schedule: str = key(Choice(("knaus-zwicker", "smallvcm")), "knaus-zwicker")  # exact, or r n^((alpha - 1) / 2)
+    schedule: str = key(
+        Choice(("knaus-zwicker", "smallvcm")), "knaus-zwicker"
+    )  # exact, or r n^((alpha - 1) / 2)
     kernel: str = key(Choice(("constant", "epanechnikov")), "constant")
-    min_normal_cosine: float = key(Number(at_least=0, at_most=1), 0.4)  # between the surfaces of photon and vertex
+    min_normal_cosine: float = key(
+        Number(at_least=0, at_most=1), 0.4
+    )  # between the surfaces of photon and vertex
     light_paths: float = key(Number(at_least=0.01, at_most=64), 1.0)  # per pixel
 
     def __post_init__(self):
@@ -139,8 +150,12 @@ class Merging(Node):
 class BruteForce(Node):
     """[render.reference]: the brute-force integrator "reference", for a few pixels."""
 
-    mode: str = key(Choice(("vcm", "bdpt", "bdpm")), "vcm")  # all techniques, none that merges, only those that merge
-    light_samples: int | None = key(Number(at_least=0, whole=True), None)  # light subpaths; default: one per pixel
+    mode: str = key(
+        Choice(("vcm", "bdpt", "bdpm")), "vcm"
+    )  # all techniques, none that merges, only those that merge
+    light_samples: int | None = key(
+        Number(at_least=0, whole=True), None
+    )  # light subpaths; default: one per pixel
     eye_samples: int = key(_count, 1)  # eye subpaths per pixel
     min_path_length: int = key(_count, 1)  # edges; shorter paths are left out
 
@@ -172,10 +187,14 @@ class Render(Node):
 
     def problems(self):
         if self.integrator in MERGES and self.wavelengths != "shared":
-            message = f'expected "shared", since {self.integrator} merges paths, found {show(self.wavelengths)}'
+            message = (
+                f'expected "shared", since {self.integrator} merges paths, found {show(self.wavelengths)}'
+            )
             yield "wavelengths", message
         if self.integrator != "pt" and self.max_path_length > LONGEST_STORED:
-            message = f"expected at most {LONGEST_STORED} with {self.integrator}, found {self.max_path_length}"
+            message = (
+                f"expected at most {LONGEST_STORED} with {self.integrator}, found {self.max_path_length}"
+            )
             yield "max_path_length", message
         if self.wavelength_range is not None and self.wavelength_range[0] >= self.wavelength_range[1]:
             yield "wavelength_range", expected("first < last", self.wavelength_range)
@@ -192,22 +211,39 @@ class Material(Node):
 class Diffuse(Material):
     """type = "diffuse": Lambert."""
 
-    reflectance: Spectrum = key(_unit_range, Constant(0.5))
+    reflectance: Spectrum | Texture = key(_reflectance, Constant(0.5))
 
 
 @node
 class OrenNayar(Material):
     """type = "oren-nayar": rough matte."""
 
-    reflectance: Spectrum = key(_unit_range, Constant(0.5))
+    reflectance: Spectrum | Texture = key(_reflectance, Constant(0.5))
     roughness: float = key(Number(at_least=0, at_most=90), 20.0)  # degrees, sigma of the facets' slopes
+
+
+@node
+class Phong(Material):
+    """type = "phong": matte, and glossy about the mirrored direction."""
+
+    reflectance: Spectrum | Texture = key(_reflectance, Constant(0.5))  # of the matte part
+    specular: Spectrum = key(_share, Constant(0.2))  # of the glossy part, seen along the normal
+    exponent: float = key(Number(at_least=0, at_most=1e6), 30.0)  # of the cosine: the larger, the sharper
+
+
+@node
+class Plastic(Material):
+    """type = "plastic": matte under a smooth clear coat."""
+
+    reflectance: Spectrum | Texture = key(_reflectance, Constant(0.5))  # of what is under the coat
+    ior: float = key(Number(at_least=1, at_most=10), 1.5)  # of the coat, over that of what surrounds it
 
 
 @node
 class Mirror(Material):
     """type = "mirror": reflects the same share at every angle."""
 
-    reflectance: Spectrum = key(_unit_range, Constant(1.0))
+    reflectance: Spectrum | Texture = key(_reflectance, Constant(1.0))
 
 
 @node
@@ -217,7 +253,7 @@ class Conductor(Material):
     metal: str | None = key(MetalField(), None)
     eta: Spectrum | None = key(_positive_spectrum, None)
     k: Spectrum | None = key(_radiance, None)
-    reflectance: Spectrum = key(_unit_range, Constant(1.0))  # multiplies
+    reflectance: Spectrum | Texture = key(_reflectance, Constant(1.0))  # multiplies
 
     def problems(self):
         if self.metal is None and self.eta is None and self.k is None:
@@ -253,13 +289,17 @@ class PassThrough(Node):
 MATERIALS = {
     "diffuse": Diffuse,
     "oren-nayar": OrenNayar,
+    "phong": Phong,
+    "plastic": Plastic,
     "mirror": Mirror,
     "conductor": Conductor,
     "dielectric": Dielectric,
     "thin-dielectric": ThinDielectric,
     "none": PassThrough,
 }
-TYPE_NAMES = {cls: name for classes in (CAMERAS, MATERIALS, SHAPES, EMITTERS) for name, cls in classes.items()}
+TYPE_NAMES = {
+    cls: name for classes in (CAMERAS, MATERIALS, SHAPES, EMITTERS) for name, cls in classes.items()
+}
 
 
 @node

@@ -27,6 +27,33 @@ def grooved_sphere(segments, depth, grooves):
     return Mesh(vertices, _faces(rings, segments), normals.astype(np.float32))
 
 
+def unrolled(mesh, segments):
+    """The Mesh of `grooved_sphere` with texture coordinates, cut open where u is 0 and 1, and at the poles.
+
+    u is the angle around the axis, of a full turn, and v the angle from the south pole, of half a turn.
+    """
+    n_vertices, rings = len(mesh.vertices), (len(mesh.vertices) - 2) // segments + 1
+    columns, heights = np.arange(segments), np.arange(1, rings)
+    faces, first, last = mesh.faces.copy(), mesh.faces[:segments], mesh.faces[-segments:]
+    # The last faces around end in copies of the ring's first vertex, and every face at a pole has its own.
+    ends = faces[segments:-segments].reshape(rings - 2, segments, 2, 3)[:, -1]
+    for corners in (faces[segments - 1], faces[-1], ends):
+        is_first = (corners > 0) & (corners < n_vertices - 1) & ((corners - 1) % segments == 0)
+        corners[is_first] = n_vertices + (corners[is_first] - 1) // segments
+    north = n_vertices + rings - 1 + columns
+    faces[:segments, 0], faces[-segments:, 0] = north, north + segments
+    copies = np.concatenate([1 + segments * (heights - 1), first[:, 0], last[:, 0]])
+    sources = np.concatenate([np.arange(n_vertices), copies])
+    u = np.concatenate(
+        [[0], np.tile(columns, rings - 1), [0], np.full(rings - 1, segments), columns + 0.5, columns + 0.5]
+    )
+    from_north = np.concatenate(
+        [[0], np.repeat(heights, segments), [rings], heights, 0 * columns, 0 * columns + rings]
+    )
+    uvs = np.stack([u / segments, 1 - from_north / rings], axis=1).astype(np.float32)
+    return Mesh(mesh.vertices[sources], faces, mesh.normals[sources], uvs)
+
+
 def _turned(outward, upward, around):
     """Points of a profile (outward, upward), turned to each direction around; float64 (rings x segments, 3)."""
     points = np.empty((len(outward), len(around), 3))

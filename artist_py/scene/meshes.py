@@ -70,7 +70,7 @@ def _placed(scene, node):
 
 
 def _joined(meshes):
-    """One Mesh of several; if some have normals or texture coordinates, the others get flat ones or zeros."""
+    """One Mesh of several: if some have normals, others get flat ones; texture coordinates only if all have some."""
     meshes = [mesh for mesh in meshes if len(mesh.faces)]
     for index, mesh in enumerate(meshes):
         _check_indices(mesh)
@@ -80,14 +80,13 @@ def _joined(meshes):
         raise ValueError("the file has no faces")
     if len(meshes) == 1:
         return meshes[0]
-    has_normals, has_uvs = meshes[0].normals is not None, any(mesh.uvs is not None for mesh in meshes)
-    uvs = [np.zeros((len(m.vertices), 2), np.float32) if m.uvs is None else m.uvs for m in meshes]
+    has_normals, has_uvs = meshes[0].normals is not None, all(mesh.uvs is not None for mesh in meshes)
     first = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
     return Mesh(
         np.concatenate([mesh.vertices for mesh in meshes]),
         np.concatenate([mesh.faces + start for mesh, start in zip(meshes, first, strict=False)]),
         np.concatenate([mesh.normals for mesh in meshes]) if has_normals else None,
-        np.concatenate(uvs) if has_uvs else None,
+        np.concatenate([mesh.uvs for mesh in meshes]) if has_uvs else None,
     )
 
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from artist_py import data
+from artist_py.core.fresnel import fresnel_dielectric
 from artist_py.errors import Problem, SceneError
 from artist_py.scene.spectra import samples_of, unknown
 from artist_py.scene.spectrum_types import Cauchy, Constant, File, Named, Sampled, Sellmeier
@@ -99,6 +100,17 @@ _INDEX = {
     Sampled: _sampled,
     File: _file,
 }
+
+
+def diffuse_transmittance(ior):
+    """Share of diffuse light that enters a smooth medium of the relative index `ior` >= 1: the mean of 1 - F.
+
+    Gauss and Legendre's rule in the square root of the cosine, where F has its bend; exact to 1e-12.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(64)
+    roots = 0.5 + 0.5 * nodes
+    entering = [1.0 - fresnel_dielectric(root * root, ior)[0] for root in roots.tolist()]
+    return float(np.sum(2.0 * weights * roots**3 * entering))
 
 
 def metal_table(name, first_nm, last_nm, node=None):

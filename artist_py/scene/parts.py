@@ -9,12 +9,13 @@ from artist_py.scene import shape_types, tables
 from artist_py.scene.transforms import matrix
 
 # Corners of a box by their coordinate (0 low, 1 high), four per face, counter-clockwise from outside.
+# u runs along the first edge and v along the last: upright on the four sides where z is up.
 BOX_FACES = (
-    ((0, 0, 0), (0, 0, 1), (0, 1, 1), (0, 1, 0)),
+    ((0, 1, 0), (0, 0, 0), (0, 0, 1), (0, 1, 1)),
     ((1, 0, 0), (1, 1, 0), (1, 1, 1), (1, 0, 1)),
     ((0, 0, 0), (1, 0, 0), (1, 0, 1), (0, 0, 1)),
-    ((0, 1, 0), (0, 1, 1), (1, 1, 1), (1, 1, 0)),
-    ((0, 0, 0), (0, 1, 0), (1, 1, 0), (1, 0, 0)),
+    ((1, 1, 0), (0, 1, 0), (0, 1, 1), (1, 1, 1)),
+    ((0, 1, 0), (1, 1, 0), (1, 0, 0), (0, 0, 0)),
     ((0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)),
 )
 
@@ -126,9 +127,9 @@ def _mesh(shape, label, warn):
 
 
 def _grooved_sphere(shape, label, warn):
-    from artist_py.scene.meshes import grooved_sphere
+    from artist_py.scene.grooved_sphere import grooved_sphere, unrolled
 
-    mesh = grooved_sphere(shape.segments, shape.depth, shape.grooves)
+    mesh = unrolled(grooved_sphere(shape.segments, shape.depth, shape.grooves), shape.segments)
     axes = np.stack(_axes(shape.axis), axis=1) * shape.radius
     return _triangles(shape, label, mesh).moved(_frame(shape.center, axes))
 

@@ -23,7 +23,7 @@ NOT_NEGATIVE = Number(at_least=0)
 
 _sampled = {"wavelengths": Sampled, "file": File}
 _light = {"illuminant": Named, "blackbody": Blackbody, "gaussian": Gaussian, "lines": Lines}
-_spectrum_table = Forms({"rgb": Rgb, **_light, **_sampled}, _SPECTRUM)
+SPECTRUM_FORMS = Forms({"rgb": Rgb, **_light, **_sampled}, _SPECTRUM)
 _index_table = Forms({"cauchy": Cauchy, "sellmeier": Sellmeier, **_sampled}, _INDEX)
 
 
@@ -35,11 +35,12 @@ class SpectrumField:
     """
 
     bounds: Number = NOT_NEGATIVE
+    forms: Forms = SPECTRUM_FORMS
     expected = _SPECTRUM
 
     def __call__(self, value, at):
         if isinstance(value, dict):
-            spectrum = _spectrum_table(value, at)
+            spectrum = self.forms(value, at)
             if isinstance(spectrum, Named):
                 _check_name(spectrum.name, at.at("illuminant"))
         elif isinstance(value, str):

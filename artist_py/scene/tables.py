@@ -17,13 +17,18 @@ TRIANGLES, SMOOTH_TRIANGLES, PARALLELOGRAMS, QUADRICS = range(4)
 # Quadric kinds, each in its canonical frame (see geometry/quadrics.py).
 SPHERE, DISK, CYLINDER, CONE = range(4)
 
-# BSDF kinds; ABSORBER is black from both sides and ends every path.
-DIFFUSE, OREN_NAYAR, MIRROR, CONDUCTOR, DIELECTRIC, THIN_DIELECTRIC, PASS_THROUGH, ABSORBER = range(8)
+# BSDF kinds: first those with a density, then those of delta lobes only, of these last what transmits; those up to
+# CONDUCTOR have a reflectance. ABSORBER is black from both sides and ends every path.
+DIFFUSE, OREN_NAYAR, PHONG, PLASTIC = range(4)
+MIRROR, CONDUCTOR, DIELECTRIC, THIN_DIELECTRIC, PASS_THROUGH, ABSORBER = range(4, 10)
 
 # Emitter kinds: how a point on the emitter is sampled. Those without a surface come last, of them those at infinity,
 # and of these those that rays can hit.
 TRIANGLE_EMITTER, PARALLELOGRAM_EMITTER, SPHERE_EMITTER, QUADRIC_EMITTER = range(4)
 POINT_EMITTER, SPOT_EMITTER, DIRECTIONAL_EMITTER, SUN_EMITTER, ENVIRONMENT_EMITTER = range(4, 9)
+
+# Texture kinds.
+IMAGE, CHECKERBOARD = range(2)
 
 NO_EMITTER = -1
 
@@ -82,11 +87,14 @@ material_dtype = np.dtype(
         ("reflectance", "i4"),  # row of the spectra, [0, 1]
         ("eta", "i4"),  # row: conductor's real index of refraction, or the dispersive dielectric's
         ("absorption", "i4"),  # row: conductor's imaginary index of refraction
+        ("specular", "i4"),  # row: Phong lobe's reflectance along the normal
         ("is_dispersive", "i4"),
         ("medium", "i4"),  # dielectric: its row in `Scene.media`, from 1
         ("texture", "i4"),  # row of the textures that replaces `reflectance`, or -1
-        ("ior", "f8"),  # dielectric's index of refraction where it does not depend on wavelength
+        ("ior", "f8"),  # index of refraction of a dielectric or a coat where it does not depend on wavelength
+        ("transmittance", "f8"),  # plastic: share of diffuse light from outside that enters the coat
         ("roughness", "f8"),  # Oren-Nayar: standard deviation of facet slopes' angle, radians
+        ("exponent", "f8"),  # Phong: n of cos^n
     ],
     align=True,
 )
@@ -134,6 +142,21 @@ medium_dtype = np.dtype(
         ("priority", "i4"),  # where dielectrics overlap the highest fills the space
         ("eta", "i4"),  # row of the spectra if dispersive, else -1
         ("ior", "f8"),
+    ],
+    align=True,
+)
+
+texture_dtype = np.dtype(
+    [
+        ("kind", "i4"),
+        ("spectra", "i4", 3),  # rows: of the image's channels, or of the checkerboard's two colours
+        ("channels", "i4"),  # image: 1 (grey) or 3 (RGB)
+        ("is_nearest", "i4"),  # image: 1: no interpolation
+        ("width", "i4"),  # image: texels
+        ("height", "i4"),
+        ("offset", "i8"),  # image: its first texel in the pool; row by row from the top, channels together
+        ("repeat_u", "f8"),  # images, or squares of the checkerboard, from 0 to 1 along u
+        ("repeat_v", "f8"),  # and along v
     ],
     align=True,
 )
@@ -193,16 +216,26 @@ class Emitters(NamedTuple):
     images: EnvironmentImages | None
 
 
+class Textures(NamedTuple):
+    """What materials vary over surfaces."""
+
+    records: Table  # texture_dtype
+    texels: Table | None  # uint16 (n,), see bsdf/reflectance.py; absent where no texture is an image
+
+
 class Needs(NamedTuple):
     """What the scene needs: `True`, or `None` for what is left out of its kernels."""
 
     diffuse: bool | None = None
     oren_nayar: bool | None = None
+    phong: bool | None = None
+    plastic: bool | None = None
     mirror: bool | None = None
     conductor: bool | None = None
     dielectric: bool | None = None
     thin_dielectric: bool | None = None
     pass_through: bool | None = None
+    lobes: bool | None = None  # a material that chooses between lobes
     dispersion: bool | None = None  # a dielectric whose index depends on wavelength
     media: bool | None = None  # dielectrics inside or overlapping dielectrics
     triangles: bool | None = None
@@ -264,5 +297,5 @@ class Scene(NamedTuple):
     spectra: Spectra
     emitters: Emitters | None
     media: Table | None  # medium_dtype; absent where no dielectric touches another
-    textures: object | None
+    textures: Textures | None
     needs: Needs

@@ -40,9 +40,9 @@ def scattering_towards(scene, vertex, wi_world, wavelengths, survival, light_wal
     wi = to_local(vertex.frame, wi_world)
     agrees = is_on_side(smooth, vertex.surface, wi_world, wi)
     wi = on_geometric_side(smooth, vertex.surface, wi_world, wi)
-    pdf = pdf_bsdf(scene.needs, material, vertex.wo, wi)
-    pdf_rev = pdf_bsdf(scene.needs, material, wi, vertex.wo)
-    f = evaluate_bsdf(scene.needs, material, scene.spectra, wavelengths, vertex.wo, wi)
+    pdf = pdf_bsdf(scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, vertex.wo, wi)
+    pdf_rev = pdf_bsdf(scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, wi, vertex.wo)
+    f = evaluate_bsdf(scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, vertex.wo, wi)
     adjoint = adjoint_factor(light_walk, smooth, vertex, wi_world, wi)
     return Scattering(
         f * (abs(wi.z) * adjoint),

@@ -97,27 +97,30 @@ def _merge(scene, method, merging, photon, stored, survival, wavelengths):
     direction = load_vec3(photon.direction)
     wi = to_local(vertex.frame, direction)
     material = scene.materials[vertex.surface.material]
-    pdf = pdf_bsdf(scene.needs, material, vertex.wo, wi)
+    pdf = pdf_bsdf(scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, vertex.wo, wi)
     if pdf == 0.0 or abs(dot(normal, vertex.surface.normal)) < merging.min_normal_cosine:
         return MergedPhoton(black(wavelengths), 0.0)
     if not is_on_side(scene.needs.smooth_triangles, vertex.surface, direction, wi):
         return MergedPhoton(black(wavelengths), 0.0)
-    f = evaluate_bsdf(scene.needs, material, scene.spectra, wavelengths, vertex.wo, wi)
-    weight = _weight(method.techniques.merge_once, scene, method, photon, stored, material, wi, pdf, survival)
+    f = evaluate_bsdf(scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, vertex.wo, wi)
+    weight = _weight(
+        method.techniques.merge_once, scene, method, photon, stored, material, wi, pdf, survival, wavelengths
+    )
     shading = _shading_factor(scene.needs.smooth_triangles, normal, direction, wi)
     return MergedPhoton(load_throughput(photon, wavelengths) * f * (weight * shading), weight)
 
 
 @function
-def _weight(merge_once, scene, method, photon, stored, material, wi, pdf, survival):
+def _weight(merge_once, scene, method, photon, stored, material, wi, pdf, survival, wavelengths):
     """(1.14), or 1 where merging is the only technique."""
     if merge_once is not None:
         return 1.0
-    pdf_rev = pdf_bsdf(scene.needs, material, wi, stored.vertex.wo) * survival
-    if not stored.vertex.is_sampled_back:
+    vertex = stored.vertex
+    pdf_rev = pdf_bsdf(scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, wi, vertex.wo)
+    if not vertex.is_sampled_back:
         pdf_rev = 0.0
     light = bracket(method.counts, Partial(photon.c, photon.e), pdf * survival)
-    eye = bracket(method.counts, stored.partial, pdf_rev)
+    eye = bracket(method.counts, stored.partial, pdf_rev * survival)
     return weight_of_merge(method.counts, light, eye)
 
 

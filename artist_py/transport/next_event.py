@@ -56,14 +56,16 @@ def _connect(emitters, scene, vertex, wavelengths, stream, pair, u_select):
         return Connection(black(wavelengths), 0, 0.0)
     wi_world = towards * (1.0 / math.sqrt(dot(towards, towards)))
     wi = to_local(vertex.frame, wi_world)
-    pdf_scatter = pdf_bsdf(scene.needs, material, vertex.wo, wi)
+    pdf_scatter = pdf_bsdf(
+        scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, vertex.wo, wi
+    )
     if pdf_scatter == 0.0 or not is_on_side(scene.needs.smooth_triangles, vertex.surface, wi_world, wi):
         return Connection(black(wavelengths), 0, 0.0)
     start = leave_surface(vertex.surface, wi_world)
     end = offset_position(point.position, point.normal, point.extent, -wi_world)
     if is_occluded(scene.geometry.embree, start, end - start, 1.0):
         return Connection(black(wavelengths), 1, 0.0)
-    f = evaluate_bsdf(scene.needs, material, scene.spectra, wavelengths, vertex.wo, wi)
+    f = evaluate_bsdf(scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, vertex.wo, wi)
     pdf_light = point.pdf_solid_angle * emitter.pdf_select
     # The balance heuristic over the density: w / p = 1 / (p + p').
     pdf_hit = pdf_scatter * can_be_hit(scene.needs.surfaceless_emitters, emitter)

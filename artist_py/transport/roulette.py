@@ -2,11 +2,10 @@
 
 from typing import NamedTuple
 
+from ..bsdf.dispatch import survival_bsdf
 from ..core.rng import random_number
-from ..core.spectra import spectrum_at
 from ..core.vector import lane_max
 from ..jit import function
-from ..scene.tables import DIELECTRIC
 from .subpath import Path, with_throughput
 
 
@@ -51,9 +50,7 @@ def local_survival(scene, vertex, wavelengths):
     Unlike the throughput it may therefore be part of the densities that weights compare.
     """
     material = scene.materials[vertex.surface.material]
-    if material.kind >= DIELECTRIC:
-        return 1.0
-    return min(1.0, float(lane_max(spectrum_at(scene.spectra, material.reflectance, wavelengths))))
+    return survival_bsdf(scene.needs, material, vertex.reflectance, scene.spectra, wavelengths)
 
 
 @function

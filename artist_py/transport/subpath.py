@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 from ..bsdf.dispatch import sample_bsdf
+from ..bsdf.reflectance import reflectance_at
 from ..core.frame import Frame, frame_around, to_local, to_world
 from ..core.rng import random_pair
 from ..core.vector import Spectrum, Vec3, dot, splat, vec3
@@ -70,6 +71,7 @@ class Vertex(NamedTuple):
     frame: Frame
     wo: Vec3
     is_sampled_back: bool
+    reflectance: Spectrum  # of the material here, zero where it has none
 
 
 @function
@@ -79,18 +81,21 @@ def start_path(origin, direction, sensing, media):
 
 
 @function
-def vertex_at(scene, surface, path):
+def vertex_at(scene, surface, path, wavelengths):
     """The path's vertex on `surface`, which its ray has hit."""
-    return vertex_on(scene.needs.smooth_triangles, surface, -path.direction)
+    return vertex_on(scene, surface, -path.direction, wavelengths)
 
 
 @function
-def vertex_on(smooth, surface, wo_world):
+def vertex_on(scene, surface, wo_world, wavelengths):
     """The vertex on `surface` of a path that came from `wo_world`."""
     frame = frame_around(surface.shading_normal)
     wo = to_local(frame, wo_world)
-    agrees = is_on_side(smooth, surface, wo_world, wo)
-    return Vertex(surface, frame, on_geometric_side(smooth, surface, wo_world, wo), agrees)
+    agrees = is_on_side(scene.needs.smooth_triangles, surface, wo_world, wo)
+    wo = on_geometric_side(scene.needs.smooth_triangles, surface, wo_world, wo)
+    material = scene.materials[surface.material]
+    reflectance = reflectance_at(scene.textures, material, scene.spectra, wavelengths, surface.u, surface.v)
+    return Vertex(surface, frame, wo, agrees, reflectance)
 
 
 @function
@@ -158,8 +163,9 @@ def scatter(scene, vertex, path, wavelengths, stream, pair, u_lobe, light_walk):
     is_entering = vertex.wo.z > 0.0
     outside = ior_around(needs.media, scene, material, is_entering, path.media, wavelengths)
     sample = sample_bsdf(
-        needs, material, scene.spectra, wavelengths, vertex.wo, u, v, u_lobe, path.ratio, outside, light_walk
-    )
+        needs, material, vertex.reflectance, scene.spectra, wavelengths, vertex.wo, u, v, u_lobe, path.ratio, outside,
+        light_walk,
+    )  # fmt: skip
     direction = to_world(vertex.frame, sample.wi)
     is_kept = sample.pdf > 0.0 and is_on_side(needs.smooth_triangles, surface, direction, sample.wi)
     is_refracted = sample.wi.z * vertex.wo.z < 0.0

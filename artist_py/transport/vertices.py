@@ -31,6 +31,8 @@ def vertex_dtype(lanes):
             ("shading_normal", "f4", 3),
             ("direction", "f4", 3),  # unit, back along the subpath
             ("throughput", "f4", lanes),  # as it arrives
+            ("u", "f4"),
+            ("v", "f4"),
             ("c", "f8"),  # see mis.py, on arrival
             ("e", "f8"),
             ("extent", "f4"),
@@ -91,6 +93,8 @@ def store_vertex(pool, thread, surface, direction, throughput, partial, length, 
         record.throughput[i] = lane(throughput, i)
     record.c = partial.c
     record.e = partial.e
+    record.u = surface.u
+    record.v = surface.v
     record.extent = surface.extent
     record.material = surface.material
     record.length = length
@@ -108,15 +112,22 @@ class StoredVertex(NamedTuple):
 
 
 @function
-def load_vertex(smooth, record, zero):
-    """The `StoredVertex` of a record; `zero` has as many wavelengths as it."""
+def load_vertex(scene, record, zero, wavelengths):
+    """The `StoredVertex` of a record, of a subpath with these `wavelengths`; `zero` has as many."""
     normal = load_vec3(record.normal)
     shading = load_vec3(record.shading_normal)
     direction = load_vec3(record.direction)
     surface = Surface(
-        load_vec3(record.position), normal, shading, 0.0, 0.0, float(record.extent), record.material, -1
+        load_vec3(record.position),
+        normal,
+        shading,
+        float(record.u),
+        float(record.v),
+        float(record.extent),
+        record.material,
+        -1,
     )
-    vertex = vertex_on(smooth, surface, direction)
+    vertex = vertex_on(scene, surface, direction, wavelengths)
     return StoredVertex(
         vertex, direction, load_throughput(record, zero), Partial(record.c, record.e), record.length
     )

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from artist_py.bsdf.dispatch import evaluate_bsdf, pdf_bsdf, sample_bsdf
+from artist_py.bsdf.reflectance import reflectance_at
 from artist_py.core.table import Table
 from artist_py.core.vector import Spectrum, Vec3
 from artist_py.jit import kernel
@@ -15,6 +16,8 @@ from artist_py.scene.tables import Needs, Spectra, material_dtype
 TELLTALES = {
     "diffuse": "square_to_cosine_hemisphere",
     "oren_nayar": "single_albedo",
+    "phong": "square_to_power_cosine",
+    "plastic": "colour_below",
     "conductor": "fresnel_conductor",
     "dielectric": "fresnel_dielectric",
     "thin_dielectric": "slab_reflectance",
@@ -24,9 +27,12 @@ DISPERSIVE = "reflectance_lanes"
 
 @kernel
 def scatter(needs, materials, spectra, wavelengths, wo, wi, ratio):
-    s = sample_bsdf(needs, materials[0], spectra, wavelengths, wo, 0.1, 0.2, 0.3, ratio, 1.0, None)
-    f = evaluate_bsdf(needs, materials[0], spectra, wavelengths, wo, wi)
-    return s.weight + f, s.pdf + pdf_bsdf(needs, materials[0], wo, wi)
+    reflectance = reflectance_at(None, materials[0], spectra, wavelengths, 0.0, 0.0)
+    s = sample_bsdf(
+        needs, materials[0], reflectance, spectra, wavelengths, wo, 0.1, 0.2, 0.3, ratio, 1.0, None
+    )
+    f = evaluate_bsdf(needs, materials[0], reflectance, spectra, wavelengths, wo, wi)
+    return s.weight + f, s.pdf + pdf_bsdf(needs, materials[0], reflectance, spectra, wavelengths, wo, wi)
 
 
 def compiled_code(needs, ratio=None):

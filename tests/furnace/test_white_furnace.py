@@ -24,7 +24,7 @@ from rendering import (
 from artist_py.bsdf.oren_nayar import evaluate_oren_nayar
 from artist_py.core.vector import Spectrum, vec3
 from artist_py.scene.optics import metal_table
-from artist_py.scene.tables import Spectra, material_dtype
+from artist_py.scene.tables import material_dtype
 
 SKY = shape("sphere", center=[0, 0, 0], radius=4, reverse=True, emission=1)
 MATERIALS = {
@@ -173,7 +173,7 @@ def oren_nayar_albedo(reflectance, sigma, angle):
     """Integral of f cos over the hemisphere, for light at `angle` from the normal."""
     materials = np.zeros(1, material_dtype).view(np.recarray)
     materials.roughness = sigma
-    spectra = Spectra(np.full((1, 1), reflectance, np.float32), None, 0.0)
+    rho, wavelengths = Spectrum([reflectance]), Spectrum([550.0])
     nodes, weights = np.polynomial.legendre.leggauss(24)
     total = 0.0
     wo = vec3(math.sin(angle), 0.0, math.cos(angle))
@@ -182,7 +182,7 @@ def oren_nayar_albedo(reflectance, sigma, angle):
         r = math.sqrt(1 - z * z)
         for turn in turns:
             wi = vec3(r * math.cos(turn), r * math.sin(turn), z)
-            f = evaluate_oren_nayar(True, materials[0], spectra, Spectrum([550.0]), wo, wi)
+            f = evaluate_oren_nayar(True, materials[0], rho, None, wavelengths, wo, wi)
             total += float(np.asarray(f)[0]) * z * weight * 2 * math.pi / 64
     return total
 

@@ -10,9 +10,11 @@ from artist_py.bsdf.dispatch import (
     pdf_bsdf,
     sample_bsdf,
 )
+from artist_py.bsdf.reflectance import reflectance_at
 from artist_py.core.table import Table
 from artist_py.core.vector import Spectrum, Vec3, lane, vec3
 from artist_py.jit import kernel
+from artist_py.scene.optics import diffuse_transmittance
 from artist_py.scene.tables import (
     CONDUCTOR,
     DIELECTRIC,
@@ -20,6 +22,8 @@ from artist_py.scene.tables import (
     MIRROR,
     OREN_NAYAR,
     PASS_THROUGH,
+    PHONG,
+    PLASTIC,
     THIN_DIELECTRIC,
     Needs,
     Spectra,
@@ -29,6 +33,8 @@ from artist_py.scene.tables import (
 ALL = Needs(
     diffuse=True,
     oren_nayar=True,
+    phong=True,
+    plastic=True,
     mirror=True,
     conductor=True,
     dielectric=True,
@@ -39,7 +45,7 @@ ALL = Needs(
 )
 LANES = 4
 WAVELENGTHS = Spectrum([450.0, 500.0, 600.0, 700.0])
-COLOUR, WHITE, GOLD_ETA, GOLD_K, GLASS = range(5)
+COLOUR, WHITE, GOLD_ETA, GOLD_K, GLASS, GLOSS, BLACK = range(7)
 RESOLVED = np.array(
     [
         [0.2, 0.5, 0.8, 0.95],
@@ -47,12 +53,14 @@ RESOLVED = np.array(
         [1.516, 0.887, 0.241, 0.152],  # gold, Yakubovsky et al. 2017
         [1.961, 1.898, 3.233, 4.277],
         [1.56, 1.54, 1.52, 1.50],
+        [0.8, 0.4, 0.1, 0.05],  # with COLOUR at most 1
+        [0.0, 0.0, 0.0, 0.0],
     ],
     np.float32,
 )
 SPECTRA = Spectra(Table(RESOLVED), None, 0.0)
 DELTA = (MIRROR, CONDUCTOR, DIELECTRIC, THIN_DIELECTRIC, PASS_THROUGH)
-REFLECTIVE = (DIFFUSE, OREN_NAYAR, MIRROR, CONDUCTOR)
+REFLECTIVE = (DIFFUSE, OREN_NAYAR, PHONG, PLASTIC, MIRROR, CONDUCTOR)
 # Plain Python, which measures coverage, cannot afford as many.
 STRATA = 1_000 if numba.config.DISABLE_JIT else 100_000
 ALBEDO_BINS = 12 if numba.config.DISABLE_JIT else 96
@@ -60,7 +68,9 @@ ALBEDO_BINS = 12 if numba.config.DISABLE_JIT else 96
 ALBEDO_TOLERANCE = 0.05 / ALBEDO_BINS
 
 
-def materials(kind, reflectance=COLOUR, *, roughness=30.0, ior=1.5, is_dispersive=0, two_sided=1):
+def materials(
+    kind, reflectance=COLOUR, *, roughness=30.0, specular=GLOSS, exponent=40.0, ior=1.5, is_dispersive=0, two_sided=1
+):  # fmt: skip
     """A table of one material; roughness in degrees."""
     table = np.zeros(1, material_dtype).view(np.recarray)
     table.kind, table.reflectance, table.roughness, table.ior = (
@@ -70,7 +80,8 @@ def materials(kind, reflectance=COLOUR, *, roughness=30.0, ior=1.5, is_dispersiv
         ior,
     )
     table.is_dispersive, table.two_sided = is_dispersive, two_sided
-    table.absorption = GOLD_K
+    table.specular, table.exponent, table.absorption = specular, exponent, GOLD_K
+    table.transmittance = diffuse_transmittance(ior) if kind == PLASTIC else 0.0
     table.eta = GOLD_ETA if kind == CONDUCTOR else GLASS
     return Table(table)
 
@@ -81,6 +92,11 @@ def direction(degrees, azimuth=0.7):
     return Vec3((sine * math.cos(azimuth), sine * math.sin(azimuth), math.cos(math.radians(degrees))))
 
 
+def reflectance_of(table, spectra=SPECTRA):
+    """Reflectance of the material, a Spectrum."""
+    return reflectance_at(None, table[0], spectra, WAVELENGTHS, 0.0, 0.0)
+
+
 def ones():
     """The ratio of theory (2.6) at the start of a path."""
     return Spectrum(np.ones(LANES))
@@ -89,12 +105,20 @@ def ones():
 def sample(table, wo, numbers, *, ratio=None, ior_outside=1.0, light_walk=None):
     """`sample_bsdf` as plain Python."""
     u, v, w = numbers
-    return sample_bsdf(ALL, table[0], SPECTRA, WAVELENGTHS, wo, u, v, w, ratio, ior_outside, light_walk)
+    reflectance = reflectance_of(table)
+    return sample_bsdf(
+        ALL, table[0], reflectance, SPECTRA, WAVELENGTHS, wo, u, v, w, ratio, ior_outside, light_walk
+    )
 
 
 def evaluate(table, wo, wi):
     """f as plain Python, (C,)."""
-    return evaluate_bsdf(ALL, table[0], SPECTRA, WAVELENGTHS, wo, wi).values
+    return evaluate_bsdf(ALL, table[0], reflectance_of(table), SPECTRA, WAVELENGTHS, wo, wi).values
+
+
+def density(table, wo, wi):
+    """`pdf_bsdf` as plain Python, sr^-1."""
+    return pdf_bsdf(ALL, table[0], reflectance_of(table), SPECTRA, WAVELENGTHS, wo, wi)
 
 
 def random_directions(rng, count):
@@ -104,12 +128,13 @@ def random_directions(rng, count):
 
 @kernel
 def evaluate_rows(needs, materials, spectra, wavelengths, wo, directions, f, pdf):
+    reflectance = reflectance_at(None, materials[0], spectra, wavelengths, 0.0, 0.0)
     for i in range(len(directions)):
         wi = vec3(directions[i, 0], directions[i, 1], directions[i, 2])
-        value = evaluate_bsdf(needs, materials[0], spectra, wavelengths, wo, wi)
+        value = evaluate_bsdf(needs, materials[0], reflectance, spectra, wavelengths, wo, wi)
         for j in range(LANES):
             f[i, j] = lane(value, j)
-        pdf[i] = pdf_bsdf(needs, materials[0], wo, wi)
+        pdf[i] = pdf_bsdf(needs, materials[0], reflectance, spectra, wavelengths, wo, wi)
 
 
 def evaluated(table, wo, directions):
@@ -134,10 +159,22 @@ sample_dtype = np.dtype(
 
 @kernel
 def sample_rows(needs, materials, spectra, wavelengths, wo, numbers, ratio, ior_outside, light_walk, out):
+    reflectance = reflectance_at(None, materials[0], spectra, wavelengths, 0.0, 0.0)
     for i in range(len(numbers)):
         u, v, w = numbers[i, 0], numbers[i, 1], numbers[i, 2]
         s = sample_bsdf(
-            needs, materials[0], spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+            needs,
+            materials[0],
+            reflectance,
+            spectra,
+            wavelengths,
+            wo,
+            u,
+            v,
+            w,
+            ratio,
+            ior_outside,
+            light_walk,
         )
         row = out[i]
         row.wi[0], row.wi[1], row.wi[2] = s.wi.x, s.wi.y, s.wi.z

@@ -17,9 +17,11 @@ from bsdf_cases import (
     STRATA,
     WAVELENGTHS,
     WHITE,
+    density,
     direction,
     evaluate,
     materials,
+    reflectance_of,
     sample,
     sampled,
     strata,
@@ -27,7 +29,6 @@ from bsdf_cases import (
 
 from artist_py.bsdf.dispatch import (
     is_delta_bsdf,
-    pdf_bsdf,
     reflectance_bsdf,
 )
 from artist_py.core.fresnel import fresnel_conductor, fresnel_dielectric, slab_reflectance
@@ -39,6 +40,8 @@ from artist_py.scene.tables import (
     MIRROR,
     OREN_NAYAR,
     PASS_THROUGH,
+    PHONG,
+    PLASTIC,
     THIN_DIELECTRIC,
 )
 
@@ -51,9 +54,9 @@ class TestDeltaKinds:
         table = materials(kind)
         assert is_delta_bsdf(table[0])
         assert not evaluate(table, direction(30.0), direction(30.0, 0.7 + math.pi)).any()
-        assert pdf_bsdf(ALL, table[0], direction(30.0), direction(150.0)) == 0.0
+        assert density(table, direction(30.0), direction(150.0)) == 0.0
 
-    @pytest.mark.parametrize("kind", [DIFFUSE, OREN_NAYAR])
+    @pytest.mark.parametrize("kind", [DIFFUSE, OREN_NAYAR, PHONG, PLASTIC])
     def test_kinds_with_a_density_are_no_delta(self, kind):
         assert not is_delta_bsdf(materials(kind)[0])
 
@@ -63,7 +66,9 @@ class TestDeltaKinds:
         """The mean of the weights is the reflectance: nothing is lost or won in the choice of a lobe."""
         table, wo = materials(kind), direction(degrees)
         samples = sampled(table, wo, strata(), light_walk=True)
-        expected = reflectance_bsdf(ALL, table[0], SPECTRA, WAVELENGTHS, wo, 1.0).values
+        expected = reflectance_bsdf(
+            ALL, table[0], reflectance_of(table), SPECTRA, WAVELENGTHS, wo, 1.0
+        ).values
         np.testing.assert_allclose(samples.weight.astype(float).mean(0), expected, atol=10.0 / STRATA)
         assert samples.is_delta.all()
         np.testing.assert_array_equal(samples.pdf, samples.pdf_rev)

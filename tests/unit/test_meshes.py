@@ -11,6 +11,7 @@ import trimesh
 
 from artist_py.errors import SceneError
 from artist_py.scene import shape_types
+from artist_py.scene.grooved_sphere import unrolled
 from artist_py.scene.meshes import grooved_sphere, load_mesh, load_shape, smooth_normals
 from artist_py.scene.reader import read_scene_text
 
@@ -508,3 +509,31 @@ class TestGroovedSphere:
     def test_no_depth_is_a_sphere(self):
         mesh = grooved_sphere(16, 0.0, 9)
         assert np.allclose(mesh.normals, mesh.vertices, atol=1e-7)
+
+
+class TestUnrolled:
+    """The grooved sphere with texture coordinates."""
+
+    @pytest.mark.parametrize(("segments", "depth", "grooves"), [(8, 0.0, 0), (9, 0.3, 1), (64, 0.1, 5)])
+    def test_nothing_but_texture_coordinates_is_added(self, segments, depth, grooves):
+        mesh = grooved_sphere(segments, depth, grooves)
+        found = unrolled(mesh, segments)
+        assert np.array_equal(found.vertices[found.faces], mesh.vertices[mesh.faces])
+        assert np.array_equal(found.normals[found.faces], mesh.normals[mesh.faces])
+        assert np.array_equal(mesh.faces, grooved_sphere(segments, depth, grooves).faces)
+
+    @pytest.mark.parametrize(("segments", "depth", "grooves"), [(8, 0.0, 0), (9, 0.3, 1), (64, 0.1, 5)])
+    def test_texture_coordinates_are_angles(self, segments, depth, grooves):
+        mesh = unrolled(grooved_sphere(segments, depth, grooves), segments)
+        x, y, z = mesh.vertices.T
+        polar = np.arccos(z / np.linalg.norm(mesh.vertices, axis=1))
+        assert np.allclose(mesh.uvs[:, 1], 1 - polar / np.pi, atol=1e-6)
+        azimuth = np.arctan2(y, x) / (2 * np.pi) % 1.0
+        is_pole = np.hypot(x, y) < 1e-9
+        difference = (mesh.uvs[:, 0] - azimuth + 0.5) % 1.0 - 0.5
+        assert np.abs(difference[~is_pole]).max() < 1e-6
+        # No face goes around the back, and those at a pole have it in their middle.
+        u = mesh.uvs[mesh.faces][..., 0]
+        assert np.ptp(u, axis=1).max() < 1.01 / segments
+        at_pole = is_pole[mesh.faces]
+        assert np.allclose(u[at_pole], [np.mean(row) for row in u[at_pole.any(1)]], atol=1e-6)

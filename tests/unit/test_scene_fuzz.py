@@ -54,6 +54,13 @@ GOOD = {
     "materials": {
         "white": {"type": "diffuse", "reflectance": {"rgb": [0.1, 0.2, 0.3]}},
         "matte": {"type": "oren-nayar", "reflectance": "s2", "roughness": 30, "two_sided": False},
+        "gloss": {"type": "phong", "reflectance": 0.2, "specular": {"rgb": [0.7, 0.6, 0.5]}, "exponent": 90},
+        "coated": {"type": "plastic", "reflectance": "s2", "ior": 1.6},
+        "tiles": {"type": "diffuse", "reflectance": {"checkerboard": [0.2, "s2"], "repeat": [3, 4.5]}},
+        "photo": {
+            "type": "mirror",
+            "reflectance": {"image": "a.png", "scale": 0.5, "repeat": [2, 1], "interpolation": "nearest"},
+        },
         "gold": {"type": "conductor", "metal": "Au"},
         "metal": {"type": "conductor", "eta": 0.2, "k": {"wavelengths": [400, 700], "values": [3, 4]}},
         "glass": {"type": "dielectric", "ior": {"sellmeier": [[1.03, 0.006], [0.23, 0.02]]}, "priority": 2},

@@ -53,7 +53,7 @@ def node_classes():
 def classes_of(convert):
     """The node classes that a converter may return."""
     if isinstance(convert, spectrum_fields.SpectrumField):
-        return list(spectrum_fields._spectrum_table.classes.values())
+        return list(convert.forms.classes.values())
     if isinstance(convert, spectrum_fields.IndexField):
         return list(spectrum_fields._index_table.classes.values())
     if isinstance(convert, shape_types.EmissionField):
@@ -77,7 +77,8 @@ def value_words(convert):
         return " ".join([convert.expected, ", ".join(bounds)]).strip()
     if isinstance(convert, spectrum_fields.SpectrumField):
         bounds = value_words(convert.bounds).removeprefix("a number").strip()
-        return f"a spectrum {bounds}".strip()
+        kind = "a spectrum or texture" if "image" in convert.forms.classes else "a spectrum"
+        return f"{kind} {bounds}".strip()
     if isinstance(convert, spectrum_fields.IndexField):
         return "a refractive index"
     return convert.expected

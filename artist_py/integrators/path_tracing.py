@@ -116,17 +116,16 @@ def choice_numbers(scene, stream, pair):
 @function
 def _choice_numbers(emitters, needs, stream, pair):
     if emitters is None:
-        return _numbers_if(None, needs.dielectric, needs.thin_dielectric, stream, pair)
-    return _numbers_if(emitters.alias, needs.dielectric, needs.thin_dielectric, stream, pair)
+        return _numbers_if(None, needs.lobes, stream, pair)
+    return _numbers_if(emitters.alias, needs.lobes, stream, pair)
 
 
 @function
-def _numbers_if(alias, dielectric, thin_dielectric, stream, pair):
+def _numbers_if(alias, lobes, stream, pair):
     # Nested, because numba prunes a test for None but not a conjunction.
     if alias is None:  # noqa: SIM102
-        if dielectric is None:  # noqa: SIM102
-            if thin_dielectric is None:
-                return 0.0, 0.0
+        if lobes is None:
+            return 0.0, 0.0
     return random_pair(stream, pair)
 
 

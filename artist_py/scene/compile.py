@@ -31,6 +31,7 @@ EMITTER_NEEDS = {
     tables.SUN_EMITTER: "distant_emitters",
     tables.ENVIRONMENT_EMITTER: "environments",
 }
+WITH_LOBES = {tables.OREN_NAYAR, tables.DIELECTRIC, tables.THIN_DIELECTRIC}
 MANY_DIELECTRICS = 2000  # with more of them it is taken for granted that some touch
 
 
@@ -168,6 +169,7 @@ def _needs(graph, geometry, materials, emitters, media):
         "surfaceless_emitters": bool((lights["kind"] >= tables.POINT_EMITTER).any()),
         "environment_images": bool((lights["image"] >= 0).any()),
         "hidden_emitters": bool((lights["visible"] == 0).any()),
+        "lobes": bool(used & WITH_LOBES),
         "dispersion": bool(materials.table["is_dispersive"].any()),
         "media": media is not None,
         "triangles": bool(kinds & {tables.TRIANGLES, tables.SMOOTH_TRIANGLES}),

@@ -15,6 +15,7 @@ FEATURES = {
     "dielectric": ("smooth glass, refraction", "no dielectric material"),
     "thin_dielectric": ("thin panes", "no thin-dielectric material"),
     "pass_through": ("surfaces that light ignores", 'no material of type "none"'),
+    "lobes": ("a choice between lobes", "no material has more than one lobe"),
     "dispersion": (
         "refraction by wavelength, lane densities",
         "no index of refraction depends on wavelength",

@@ -203,6 +203,7 @@ class Needs(NamedTuple):
     dielectric: bool | None = None
     thin_dielectric: bool | None = None
     pass_through: bool | None = None
+    lobes: bool | None = None  # a material that chooses between lobes
     dispersion: bool | None = None  # a dielectric whose index depends on wavelength
     media: bool | None = None  # dielectrics inside or overlapping dielectrics
     triangles: bool | None = None

@@ -23,7 +23,7 @@ from .pair import BSDF, CHOICE, EMITTER, FIRST_VERTEX, PAIRS_PER_VERTEX, ROULETT
 
 
 @function
-def trace_eye_subpath(  # noqa: C901, PLR0915 - one loop, a line or two per step of the walk
+def trace_eye_subpath(  # noqa: PLR0915 - one loop, a line or two per step of the walk
     setup, thread, index, stream, place, path, partial, film_weight
 ):
     """Radiance along `path` but for merges, whose vertices are stored with the sample's `film_weight`; a `Walk`."""

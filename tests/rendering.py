@@ -5,6 +5,7 @@ a radiance without any noise of colour. Comparisons allow for the measured stand
 rounding; each states how precise it has to be, so that noise cannot hide a fault.
 """
 
+import dataclasses
 import math
 from typing import NamedTuple
 
@@ -55,6 +56,12 @@ def scene(shapes=(), *, materials=(), objects=(), instances=(), camera=None, fil
     }
     lines = [f"{name} = {toml(value)}" for name, value in table.items()]
     return compile_scene(read_scene_text("\n".join(lines)))
+
+
+def with_render(compiled, **settings):
+    """The same compiled scene with other settings of rendering, such as the seed, that its tables do not depend on."""
+    render = dataclasses.replace(compiled.graph.render, **settings)
+    return dataclasses.replace(compiled, graph=dataclasses.replace(compiled.graph, render=render))
 
 
 def look(position, look_at, field_of_view=45.0, **more):

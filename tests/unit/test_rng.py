@@ -5,6 +5,7 @@ Fixed seeds; a correct generator fails one statistical test by chance with proba
 
 import math
 
+import numba
 import numpy as np
 import pytest
 from scipy import stats
@@ -17,6 +18,7 @@ from artist_py.jit import kernel
 FALSE_ALARM = 1e-4
 STRATIFIED = 12
 SEEDS = (1, 2, 2**63 - 1)
+needs_speed = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="takes many numbers")
 
 
 @kernel
@@ -34,7 +36,8 @@ def numbers(*, seed=1, parity=0, first=0, stratified=STRATIFIED, pairs=(0,), pix
     """Array (pixels, count, pairs, 3); `count` iterations of one parity, from number `first` on."""
     pairs, pixels = np.asarray(pairs, np.int64), np.asarray(pixels, np.int64)
     out = np.empty((len(pixels), count, len(pairs), 3))
-    fill(seed, parity, first, stratified, Table(pairs), Table(pixels), Table(out))
+    with np.errstate(over="ignore"):  # of plain Python
+        fill(seed, parity, first, stratified, Table(pairs), Table(pixels), Table(out))
     return out
 
 
@@ -51,6 +54,7 @@ def is_stratified(points, bits):
     return True
 
 
+@needs_speed
 @pytest.mark.parametrize("parity", [0, 1])
 @pytest.mark.parametrize("seed", SEEDS)
 def test_every_pair_is_a_0_2_sequence(seed, parity):
@@ -81,6 +85,7 @@ def test_second_dimension_is_pascals_triangle():
         assert int(rng._pascal(np.uint32(1 << (31 - column)))) == row
 
 
+@needs_speed
 def test_pairs_are_shuffled_against_each_other():
     """Over the 256 iterations of a pixel, one pair's numbers tell nothing of another's: 45 joint tables of 16 x 16.
 
@@ -103,6 +108,7 @@ def test_pairs_are_shuffled_against_each_other():
 PIXELS = np.arange(100_000)
 
 
+@needs_speed
 @pytest.mark.parametrize("pair", [0, 3, STRATIFIED + 5])
 @pytest.mark.parametrize("number", [0, 5, 1000])
 def test_uniform_over_pixels(pair, number):
@@ -131,6 +137,7 @@ OTHERS = {
 }
 
 
+@needs_speed
 @pytest.mark.parametrize("other", OTHERS.values(), ids=OTHERS)
 def test_independent_over_pixels(other):
     """Joint tables of each number with each of the other's: 9 chi-squared tests and 9 of correlation."""
@@ -142,6 +149,7 @@ def test_independent_over_pixels(other):
             assert stats.pearsonr(mine[:, a], others[:, b]).pvalue > FALSE_ALARM / 18
 
 
+@needs_speed
 def test_unstratified_iterations_are_independent():
     """Without stratification, numbers of successive iterations share nothing either."""
     points = numbers(stratified=0, pairs=[0], pixels=range(500), count=201)[:, :, 0]
@@ -151,6 +159,7 @@ def test_unstratified_iterations_are_independent():
         assert stats.chisquare(table.ravel()).pvalue > FALSE_ALARM / 3
 
 
+@needs_speed
 def test_parities_together_are_not_stratified():
     """Even and odd iterations are two randomisations, and not halves of one: as many cells hit twice as by chance.
 
@@ -179,6 +188,7 @@ def test_no_stream_repeats():
     assert len(set(keys)) == len(keys)
 
 
+@needs_speed
 def test_iterations_of_a_stream_do_not_repeat():
     points = numbers(stratified=0, pairs=range(4), count=5000)[0].reshape(-1, 3)
     assert len(np.unique(points[:, 0] + points[:, 1] * 2**32)) == len(points)

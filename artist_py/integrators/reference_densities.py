@@ -7,15 +7,16 @@ it is. p>_i and p<_i are the area densities of vertex x_i when a subpath from th
 import math
 
 from ..bsdf.dispatch import pdf_bsdf
+from ..bsdf.plastic import coat_reflectance, colour_below, mirror_probability
 from ..bsdf.thin_dielectric import sheet_reflectance
 from ..cameras.sensor import pdf_camera_direction
 from ..core.frame import to_local
 from ..core.fresnel import fresnel_dielectric
 from ..core.spectra import ior_of_lane, lane_of
-from ..core.vector import dot, lane_count, lane_sum
+from ..core.vector import dot, lane_count, lane_sum, vec3
 from ..emitters.dispatch import pdf_emitter
 from ..emitters.emission import pdf_emission_of_hit
-from ..scene.tables import DIELECTRIC, THIN_DIELECTRIC
+from ..scene.tables import DIELECTRIC, PLASTIC, THIN_DIELECTRIC
 from ..transport.subpath import is_on_side, vertex_on
 
 HIT, NEE, VC, LT, VM = "hit", "nee", "vc", "lt", "vm"
@@ -60,12 +61,14 @@ def pdf_direction(scene, wavelengths, node, wo_world, wi_world):
     n^2 cos on the side left in. Its ratio for the two walks is (1.24).
     """
     smooth = scene.needs.smooth_triangles
-    wo, wi = vertex_on(smooth, node.surface, wo_world).wo, to_local(node.frame, wi_world)
+    wo = vertex_on(scene, node.surface, wo_world, wavelengths).wo
+    wi = to_local(node.frame, wi_world)
     if not is_on_side(smooth, node.surface, wi_world, wi):
         return 0.0
     material = scene.materials[node.surface.material]
     if not node.is_delta:
-        return pdf_bsdf(scene.needs, material, wo, wi) * node.survival
+        pdf = pdf_bsdf(scene.needs, material, node.reflectance, scene.spectra, wavelengths, wo, wi)
+        return pdf * node.survival
     index = ior_on_side(scene, wavelengths, material, node, wi)
     cosine = abs(dot(wi_world, node.surface.normal))
     return lobe_probability(scene, wavelengths, material, node, wo, wi) * index**2 * cosine * node.survival
@@ -89,6 +92,9 @@ def lobe_probability(scene, wavelengths, material, node, wo, wi):
         ratio = wavelengths if scene.needs.dispersion else None
         lanes = sheet_reflectance(ratio, material, scene.spectra, wavelengths, wo, node.outside)
         reflectance = lane_sum(lanes) / lane_count(lanes)
+    elif material.kind == PLASTIC:
+        face = coat_reflectance(material, vec3(wo.x, wo.y, abs(wo.z)))
+        return mirror_probability(face, colour_below(material, node.reflectance))
     else:
         return 1.0
     return reflectance if wo.z * wi.z > 0.0 else 1.0 - reflectance

@@ -37,7 +37,9 @@ class Node(NamedTuple):
     frame: Frame
     outside: object  # index of refraction around a dielectric: a number, or one per wavelength
     survival: float  # probability that roulette lets a subpath go on
-    is_delta: bool
+    is_delta: bool  # whether the walk has left by a delta lobe
+    can_join: bool  # whether connections and merges are possible here
+    reflectance: Spectrum | None  # of the material here; a point of an emitter or of the lens has none
 
 
 class Edge(NamedTuple):
@@ -82,12 +84,12 @@ class FullPath(NamedTuple):
 def end_node(position, normal, extent, emitter):
     """The node of a point that ends paths, on an emitter or (`emitter` < 0) on the lens."""
     surface = Surface(position, normal, normal, 0.0, 0.0, extent, -1, emitter)
-    return Node(surface, frame_around(normal), 1.0, 1.0, False)
+    return Node(surface, frame_around(normal), 1.0, 1.0, False, True, None)
 
 
 def emitter_node(hit):
     """The node of an emitter that a subpath has met."""
-    return Node(hit.surface, frame_around(hit.surface.shading_normal), 1.0, 1.0, False)
+    return Node(hit.surface, frame_around(hit.surface.shading_normal), 1.0, 1.0, False, True, None)
 
 
 def reverse(edge):
@@ -104,9 +106,10 @@ def connecting_edge(start, end):
     return Edge(direction, distance_squared, *cosines)
 
 
-def vertex_of(smooth, subpath, index):
+def vertex_of(scene, wavelengths, subpath, index):
     """The `Vertex` of node `index` > 0, its `wo` back along the subpath."""
-    return vertex_on(smooth, subpath.nodes[index].surface, -subpath.edges[index - 1].direction)
+    wo_world = -subpath.edges[index - 1].direction
+    return vertex_on(scene, subpath.nodes[index].surface, wo_world, wavelengths)
 
 
 def path_of_hit(eye, hit):
@@ -122,6 +125,12 @@ def joined(light_nodes, light_edges, edge, eye_nodes, eye_edges):
     return FullPath(nodes, [*light_edges, edge, *back], nodes[1].surface.position)
 
 
+def up_to(subpath, index):
+    """`(nodes, edges)` of a subpath that is joined at node `index`: by no delta lobe, wherever it went on to."""
+    nodes = [*subpath.nodes[:index], subpath.nodes[index]._replace(is_delta=False)]
+    return nodes, subpath.edges[:index]
+
+
 def merged(light_nodes, light_edges, eye_nodes, eye_edges):
     """The full path of two subpaths whose last nodes are taken for one: for that of the eye subpath."""
     back = [reverse(each) for each in reversed(eye_edges)]
@@ -134,7 +143,8 @@ def node_at(scene, vertex, media, wavelengths):
     material = scene.materials[vertex.surface.material]
     outside = ior_around(scene.needs.media, scene, material, vertex.wo.z > 0.0, media, wavelengths)
     survival = local_survival(scene, vertex, wavelengths)
-    return Node(vertex.surface, vertex.frame, outside, survival, is_delta_bsdf(material))
+    is_delta = is_delta_bsdf(material)
+    return Node(vertex.surface, vertex.frame, outside, survival, is_delta, not is_delta, vertex.reflectance)
 
 
 def trace_subpath(scene, limits, stream, wavelengths, start, path, light_walk):
@@ -152,15 +162,17 @@ def trace_subpath(scene, limits, stream, wavelengths, start, path, light_walk):
         if is_passed_through(scene, surface, material, path):
             path = go_straight(scene, surface, material, path)
             continue
-        vertex = vertex_on(scene.needs.smooth_triangles, surface, -path.direction)
+        vertex = vertex_on(scene, surface, -path.direction, wavelengths)
         if _is_end(limits, subpath, material, vertex, light_walk):
             return subpath
         node = node_at(scene, vertex, path.media, wavelengths)
         for values, value in zip(subpath[:3], (node, edge, path.throughput), strict=True):
             values.append(value)
-        path = _next(scene, stream, wavelengths, vertex, node, path, len(subpath.edges), light_walk)
-        if path.is_absorbed:
+        step = _next(scene, stream, wavelengths, vertex, path, len(subpath.edges), light_walk)
+        if step.path.is_absorbed or random_number(stream, ROULETTE + len(subpath.edges)) >= node.survival:
             return subpath
+        subpath.nodes[-1] = node._replace(is_delta=step.is_delta)
+        path = survived(step.path, node.survival)
 
 
 def _is_end(limits, subpath, material, vertex, light_walk):
@@ -176,12 +188,7 @@ def edge_to(surface, path, start):
     return Edge(path.direction, dot(way, way), *cosines)
 
 
-def _next(scene, stream, wavelengths, vertex, node, path, index, light_walk):
-    """The path beyond vertex number `index`; absorbed also where roulette ends it."""
+def _next(scene, stream, wavelengths, vertex, path, index, light_walk):
+    """The `Scattered` step beyond vertex number `index`."""
     pair, u_lobe = FIRST_PAIR + index, random_number(stream, LOBE + index)
-    onwards = scatter(scene, vertex, path, wavelengths, stream, pair, u_lobe, light_walk).path
-    if onwards.is_absorbed:
-        return onwards
-    if random_number(stream, ROULETTE + index) >= node.survival:
-        return onwards._replace(is_absorbed=True)
-    return survived(onwards, node.survival)
+    return scatter(scene, vertex, path, wavelengths, stream, pair, u_lobe, light_walk)

@@ -28,7 +28,7 @@ from ..transport.splats import choose_pixel
 from ..transport.subpath import is_on_side
 from .pair import LIGHT_SEED
 from .reference_densities import HIT, LT, NEE, VC, VM, technique_densities, weight_of
-from .reference_paths import connecting_edge, end_node, joined, merged, path_of_hit, vertex_of
+from .reference_paths import connecting_edge, end_node, joined, merged, path_of_hit, up_to, vertex_of
 
 # Random dimensions of what vertex i is connected to (+ i); see also reference_paths.py.
 EMITTER_POINT, LENS_POINT, EMITTER_CHOICE, PIXEL_CHOICE = 10_000, 20_000, 30_000, 40_000
@@ -95,14 +95,14 @@ def hits(reference, eye):
 
 def scattering(reference, subpath, index, wi, light_walk):
     """`Scattering` at node `index` of a subpath towards `wi`."""
-    vertex = vertex_of(reference.scene.needs.smooth_triangles, subpath, index)
+    vertex = vertex_of(reference.scene, reference.wavelengths, subpath, index)
     survival = subpath.nodes[index].survival
     return scattering_towards(reference.scene, vertex, wi, reference.wavelengths, survival, light_walk)
 
 
 def connectable(subpath):
     """Indices of the nodes that can be connected and merged."""
-    return [i for i, node in enumerate(subpath.nodes) if i > 0 and not node.is_delta]
+    return [i for i, node in enumerate(subpath.nodes) if i > 0 and node.can_join]
 
 
 def next_events(reference, eye, stream):
@@ -133,7 +133,7 @@ def next_event(reference, eye, index, stream):
     end = offset_position(point.position, point.normal, point.extent, edge.direction)
     if there.is_black or is_blocked(scene, node.surface, -edge.direction, end):
         return nothing
-    path = joined([light], [], edge, eye.nodes[: index + 1], eye.edges[:index])
+    path = joined([light], [], edge, *up_to(eye, index))
     w = weight(reference, (NEE, 1), path) / (point.pdf_solid_angle * emitter.pdf_select)
     return emitted_radiance(scene, emitter, edge.direction, reference.wavelengths) * there.f_cos * w
 
@@ -162,7 +162,7 @@ def connection(reference, eye, i, light, j):
     goal = leave_surface(start.surface, edge.direction)
     if is_blocked(reference.scene, end.surface, -edge.direction, goal):
         return reference.sensing.zero
-    path = joined(light.nodes[: j + 1], light.edges[:j], edge, eye.nodes[: i + 1], eye.edges[:i])
+    path = joined(*up_to(light, j), edge, *up_to(eye, i))
     w = weight(reference, (VC, j + 1), path)
     return here.f_cos * there.f_cos * (w / (reference.counts.vc * edge.distance_squared))
 
@@ -194,7 +194,7 @@ def splat(reference, light, i, sensor):
     surface = light.nodes[i].surface
     if there.is_black or is_blocked(reference.scene, surface, edge.direction, sensor.position):
         return reference.sensing.zero
-    path = joined(light.nodes[: i + 1], light.edges[:i], edge, [lens], [])
+    path = joined(*up_to(light, i), edge, [lens], [])
     w = weight(reference, (LT, i + 1), path)
     return there.f_cos * (w * sensor.importance / edge.distance_squared)
 
@@ -244,16 +244,17 @@ def kernel(merging, eye, i, light, j):
 def merge(reference, eye, i, light, j):
     """What node j of a light subpath brings to node i of an eye subpath per throughputs and kernel, sr^-1."""
     scene, smooth = reference.scene, reference.scene.needs.smooth_triangles
-    vertex, wi_world = vertex_of(smooth, eye, i), -light.edges[j - 1].direction
+    vertex, wi_world = vertex_of(scene, reference.wavelengths, eye, i), -light.edges[j - 1].direction
     material, wi = scene.materials[vertex.surface.material], to_local(vertex.frame, wi_world)
     photon_normal = light.nodes[j].surface.normal
     is_elsewhere = abs(dot(photon_normal, vertex.surface.normal)) < reference.merging.min_normal_cosine
     if is_elsewhere or not is_on_side(smooth, vertex.surface, wi_world, wi):
         return reference.sensing.zero
-    if pdf_bsdf(scene.needs, material, vertex.wo, wi) == 0.0:
+    given = scene.needs, material, vertex.reflectance, scene.spectra, reference.wavelengths, vertex.wo, wi
+    if pdf_bsdf(*given) == 0.0:
         return reference.sensing.zero
-    f = evaluate_bsdf(scene.needs, material, scene.spectra, reference.wavelengths, vertex.wo, wi)
-    path = merged(light.nodes[: j + 1], light.edges[:j], eye.nodes[: i + 1], eye.edges[:i])
+    f = evaluate_bsdf(*given)
+    path = merged(*up_to(light, j), *up_to(eye, i))
     # The photon's flux was counted on the geometric surface (theory 1.7).
     shading = abs(wi.z) / light.edges[j - 1].cos_end
     return f * (weight(reference, (VM, j), path) * shading)

@@ -12,6 +12,8 @@ MATERIALS = {
     "white": WHITE,
     "grey": GREY,
     "rough": {"type": "oren-nayar", "reflectance": 0.7, "roughness": 30},
+    "gloss": {"type": "phong", "reflectance": 0.3, "specular": 0.5, "exponent": 20},
+    "plastic": {"type": "plastic", "reflectance": 0.6},
     "mirror": {"type": "mirror", "reflectance": 0.9},
     "gold": {"type": "conductor", "metal": "Au"},
     "glass": {"type": "dielectric", "ior": 1.5},
@@ -77,6 +79,19 @@ def nested():
     )
 
 
+def coated():
+    """Lobes beside lobes: plastic, whose coat is a delta, and Phong's; a mirror and glass among them."""
+    return room(
+        shape("rectangle", "plastic", corner=[-1.9, -1.9, -1.5], edges=[[3.8, 0, 0], [0, 3.8, 0]]),
+        shape("sphere", "plastic", center=[0.8, 0.4, -0.9], radius=0.6),
+        shape("sphere", "gloss", center=[-0.8, 0.3, -0.9], radius=0.6),
+        shape("rectangle", "gloss", corner=[-1.9, 1.8, -1.5], edges=[[3.8, 0, 0], [0, 0, 3]]),
+        shape("sphere", "mirror", center=[0, 1.2, -1.1], radius=0.4),
+        shape("sphere", "glass", center=[0, -0.5, -1.1], radius=0.4),
+        shape("sphere", center=[0.4, 0.5, 0.9], radius=0.4, emission=2),
+    )
+
+
 def smooth():
     """Coarse balls with interpolated normals: geometric and shading normals differ by up to 20 degrees."""
     grooved = {"depth": 0.1, "grooves": 3, "segments": 10}
@@ -113,6 +128,7 @@ SCENES = {
     "mixed": mixed,
     "lens": through_lens,
     "nested": nested,
+    "coated": coated,
     "smooth": smooth,
     "far": far,
 }

@@ -27,6 +27,7 @@ from artist_py.integrators.reference_paths import (
     joined,
     merged,
     node_at,
+    up_to,
     path_of_hit,
 )
 from artist_py.transport import connect, merge, photon_grid
@@ -130,14 +131,18 @@ class Recorder:
         self._listen(light_subpath, "sample_emission", lambda start, *_: self._begin_light(start))
         for module in (light_subpath, eye_subpath):
             self._listen(module, "vertex_at", self._arrive)
+            self._listen(module, "scatter", self._leave)
 
     def _begin_light(self, start):
         node = end_node(start.position, start.normal, start.extent, self.emitter)
         self.walk = self.light = Subpath([node], [], [], [])
 
-    def _arrive(self, vertex, scene, surface, path):
+    def _arrive(self, vertex, scene, surface, path, wavelengths):
         self.walk.edges.append(edge_to(surface, path, self.walk.nodes[-1]))
-        self.walk.nodes.append(node_at(scene, vertex, path.media, self.wavelengths))
+        self.walk.nodes.append(node_at(scene, vertex, path.media, wavelengths))
+
+    def _leave(self, step, *_):
+        self.walk.nodes[-1] = self.walk.nodes[-1]._replace(is_delta=step.is_delta)
 
     # --- connections
 
@@ -172,7 +177,7 @@ class Recorder:
         self._note(("nee", 1), weight, joined([light], [], edge, self.eye.nodes, self.eye.edges))
 
     def _note_connection(self, weight, *_):
-        nodes, edges = self.light.nodes[: self.length + 1], self.light.edges[: self.length]
+        nodes, edges = up_to(self.light, self.length)
         edge = connecting_edge(nodes[-1], self.eye.nodes[-1])
         self._note(
             ("vc", self.length + 1), weight, joined(nodes, edges, edge, self.eye.nodes, self.eye.edges)
@@ -228,9 +233,8 @@ class Recorder:
         setup = self.setup
         if setup.method.techniques.merge is None:
             return
-        smooth = setup.scene.needs.smooth_triangles
         for eye in setup.stores.eye.records.array[: setup.stores.eye.used[0]]:
-            stored = load_vertex(smooth, eye, setup.sensing.zero)
+            stored = load_vertex(setup.scene, eye, setup.sensing.zero, self.wavelengths)
             survival = local_survival(setup.scene, stored.vertex, self.wavelengths)
             for light in setup.stores.light.records.array[: setup.stores.light.used[0]]:
                 self._merge(stored, survival, light)
@@ -245,7 +249,5 @@ class Recorder:
         constants = Merging(1.0, 1.0, 0.0, None)
         merge._merge(setup.scene, setup.method, constants, photon[0], stored, survival, self.wavelengths)
         for weight in self.merge_weights:
-            path = merged(
-                self.light.nodes[: j + 1], self.light.edges[:j], self.eye.nodes[: i + 1], self.eye.edges[:i]
-            )
+            path = merged(*up_to(self.light, j), *up_to(self.eye, i))
             self._note(("vm", j), weight, path)

@@ -15,7 +15,7 @@ from .reference import ReferenceSampler
 from .stochastic import StochasticSampler
 from .techniques import TechniqueRecorder, techniques_of_render
 
-PROGRESS_SECONDS = 0.25
+PROGRESS_SECONDS = 0.5
 
 
 @dataclass(frozen=True)

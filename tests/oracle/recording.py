@@ -27,8 +27,8 @@ from artist_py.integrators.reference_paths import (
     joined,
     merged,
     node_at,
-    up_to,
     path_of_hit,
+    up_to,
 )
 from artist_py.transport import connect, merge, photon_grid
 from artist_py.transport.merge import Merging

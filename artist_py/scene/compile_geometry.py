@@ -95,7 +95,11 @@ def space_of(parts, extra_points):
     boxes = [part.bounds() for part in parts.direct]
     for _, name, to_world in parts.instances:
         boxes += [_box_under(part.bounds(), to_world) for part in parts.objects[name]]
-    corners = np.concatenate(boxes) if boxes else np.asarray(extra_points, float)
+    return _space_around(np.concatenate(boxes) if boxes else np.asarray(extra_points, float))
+
+
+def _space_around(corners):
+    """The `Space` that has the points (n, 3) around its origin, at distances of up to 1 or 2."""
     low, high = corners.min(axis=0), corners.max(axis=0)
     centre, radius = 0.5 * (low + high), 0.5 * float(np.linalg.norm(high - low))
     if not radius > 0.0:
@@ -130,13 +134,12 @@ class GeometryCompiler:
     def _place_instances(self, parts):
         self.object_parts, own = {}, {}
         for name, items in parts.objects.items():
-            # An object is stored around its own centre, for the precision of float32.
+            # An object is stored in a space of its own like the scene's: for the precision of float32, and because
+            # Embree takes what is smaller than 1e-18 as nothing.
             boxes = np.concatenate([part.bounds() for part in items])
-            centre = 0.5 * (boxes.min(axis=0) + boxes.max(axis=0))
-            shift = np.eye(4)
-            shift[:3, 3] = -centre
-            self.object_parts[name] = [part.moved(shift) for part in items]
-            own[name] = np.linalg.inv(shift)
+            stored = _space_around(boxes).from_world
+            self.object_parts[name] = [part.moved(stored) for part in items]
+            own[name] = np.linalg.inv(stored)
         for i, (instance, name, to_world) in enumerate(parts.instances):
             to_render = self.space.from_world @ to_world @ own[name]
             self.instance_rows.append((to_render, len(self.placed)))

@@ -8,7 +8,6 @@ nothing, and each of the four shared wavelengths of an iteration falls into one 
 """
 
 import argparse
-import json
 import time
 from pathlib import Path
 
@@ -20,8 +19,12 @@ from artist_py.film.accumulation import Film
 from artist_py.samplers.render_job import RenderSettings, Silence, sampler_for
 from artist_py.scene.spectrum_types import Rgb
 
+from .measure import save
+from .tables import rewrite_readme
+
 SCENES = {"1": "box_glossy.toml", "4": "box_spheres.toml"}
 FIRST_NM = 550
+FULL_SIZE = 512  # of the published figures; the references are half as large
 FOLDER = Path(__file__).parent
 
 
@@ -77,7 +80,7 @@ def measure(box, integrator, references, seconds, size):
                 sampler.iterate(film.iterations)
                 spent += time.process_time() - begun
             image = film.mean()
-            error = relative_mse(halved(image) if size == 512 else image, reference)
+            error = relative_mse(halved(image) if size == FULL_SIZE else image, reference)
             rows.append({"cpu_seconds": spent, "iterations": film.iterations, "relmse": error})
     rate = film.iterations * size * size / spent
     mean = film.mean().mean(axis=(0, 1)).tolist()
@@ -85,29 +88,31 @@ def measure(box, integrator, references, seconds, size):
 
 
 def main():
-    """Measure, print a table, write benchmarks/results/boxes.json."""
+    """Measure, print a table, and, of images of full size, benchmarks/results/boxes.json."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("references", type=Path)
     parser.add_argument("--integrators", default="pt,lt,bpt,ppm,vcm")
     parser.add_argument("--seconds", default="5,10,20,40")
     parser.add_argument("--boxes", default="1,4")
-    parser.add_argument("--size", type=int, default=512)
+    parser.add_argument("--size", type=int, default=FULL_SIZE)
     options = parser.parse_args()
     seconds = [float(word) for word in options.seconds.split(",")]
-    results = []
+    runs, disagreement = [], {}
     for box in options.boxes.split(","):
         references = np.load(options.references / f"box_s{box}.npz")
-        disagreement = relative_mse(references["vcm"].astype(float), references["bpt"].astype(float))
-        print(f"box {box}: the references' own disagreement is {disagreement:.4f}", flush=True)
+        disagreement[box] = relative_mse(references["vcm"].astype(float), references["bpt"].astype(float))
+        print(f"box {box}: the references' own disagreement is {disagreement[box]:.4f}", flush=True)
         for integrator in options.integrators.split(","):
             result = measure(box, integrator, references, seconds, options.size)
-            results.append(result)
+            runs.append(result)
             errors = ", ".join(f"{row['cpu_seconds']:.0f} s {row['relmse']:.4f}" for row in result["rows"])
             print(
                 f"  {integrator}: {result['pairs_per_cpu_second']:.0f} pairs / CPU s; relMSE {errors}",
                 flush=True,
             )
-    (FOLDER / "results" / "boxes.json").write_text(json.dumps(results, indent=1) + "\n")
+    if options.size == FULL_SIZE:
+        save("boxes", __doc__, seconds=seconds, disagreement=disagreement, runs=runs)
+        rewrite_readme()
 
 
 if __name__ == "__main__":

@@ -154,4 +154,59 @@ def samplers():
     return "\n".join(parts)
 
 
-WRITERS = (speed, embree_share, start_up, memory, threads, triangles, samplers)
+def luxcore():
+    """Rates and errors, side by side."""
+    if not (results := load("luxcore")):
+        return None
+    rows = []
+    for integrator, each in results["pairs"].items():
+        for name, figures in each["renderers"].items():
+            is_ours = name == integrator
+            ratio = each["rate_ratio"]
+            rows.append(
+                (
+                    f"{'artist' if is_ours else 'LuxCore'} {figures['version']} {name}",
+                    f"{figures['samples_per_cpu_second']['median'] / 1e3:.0f}",
+                    f"{ratio['median']:.1f} ({ratio['lowest']:.1f} to {ratio['highest']:.1f})"
+                    if is_ours
+                    else "",
+                    f"{figures['relmse']:.4f}",
+                    f"{each['error_ratio']:.1f}" if is_ours else "",
+                    f"{figures['mean_radiance']:.4f}",
+                )
+            )
+    seconds = results["cpu_seconds"]
+    header = (
+        "renderer",
+        "thousand samples per CPU second",
+        "times as many",
+        f"relMSE after {seconds} CPU s",
+        "times less error",
+        "mean radiance",
+    )
+    return table("Beside LuxCore", results, header, rows)
+
+
+def boxes():
+    """Error against CPU seconds on the reference boxes."""
+    if not (results := load("boxes")):
+        return None
+    seconds = results["seconds"]
+    rows = [
+        (
+            each["box"],
+            each["integrator"],
+            f"{each['pairs_per_cpu_second'] / 1e3:.0f}",
+            *(f"{row['relmse']:.4f}" for row in each["rows"]),
+        )
+        for each in results["runs"]
+    ]
+    rows += [
+        (box, "the references' own disagreement", "", *[f"{value:.4f}"] * len(seconds))
+        for box, value in results["disagreement"].items()
+    ]
+    header = ("box", "integrator", "thousand pairs per CPU s", *(f"relMSE, {each:g} s" for each in seconds))
+    return table("Reference boxes, 512 x 512", results, header, rows)
+
+
+WRITERS = (speed, luxcore, boxes, embree_share, start_up, memory, threads, triangles, samplers)

@@ -12,7 +12,7 @@ CHAIN = ("samplers", "integrators", "transport", "physics", "core", "jit")
 PHYSICS = {"bsdf", "emitters", "cameras", "geometry"}
 KERNEL_LAYERS = {*CHAIN, *PHYSICS}
 FOR_ALL = {"errors", "version", "data"}
-SLOW = ("numba", "numpy", "scipy", "OpenImageIO", "trimesh", "colour", "rich")
+SLOW = ("numba", "numpy", "scipy", "OpenImageIO", "trimesh", "colour", "rich", "matplotlib", "flip_evaluator")
 FILES = sorted(str(path.relative_to(PACKAGE)) for path in PACKAGE.rglob("*.py"))
 
 

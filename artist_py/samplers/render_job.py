@@ -69,7 +69,7 @@ def render(compiled, settings, observer=None, stop=None):
     run = _Run(compiled, settings, observer or Silence(), stop)
     for text in compiled.warnings:
         run.observer.warning(text)
-    film = _film_of(compiled, settings)
+    film = film_of(compiled, settings)
     with sampler_for(compiled, film, settings, run.observer) as sampler:
         compile_seconds = sampler.compile_kernels(run.observer)
         run.observer.started(_plan(compiled, settings))
@@ -146,7 +146,8 @@ def _report(run, film, error):
     return error
 
 
-def _film_of(compiled, settings):
+def film_of(compiled, settings):
+    """An empty film with what `settings` asks to keep."""
     x0, x1, y0, y1 = crop_of(compiled.graph)
     bands = len(band_edges(compiled)) - 1 if settings.spectral else 0
     return Film(y1 - y0, x1 - x0, "variance" in settings.aovs, bands)

@@ -19,7 +19,9 @@ FILES = sorted(str(path.relative_to(PACKAGE)) for path in PACKAGE.rglob("*.py"))
 def allowed(layer):
     """Layers that files of `layer` may import; `scene.tables` counts as a layer of its own."""
     if layer in {"cli", "__init__", "__main__"}:
-        return {*KERNEL_LAYERS, "scene", "scene.tables", "film", "compare", "cli"}
+        return {*KERNEL_LAYERS, "scene", "scene.tables", "film", "compare", "evidence", "cli"}
+    if layer == "evidence":
+        return {"evidence", "compare", "samplers", "scene", "film", "jit"}
     if layer == "scene":
         return {*KERNEL_LAYERS, "scene", "scene.tables", "film"} - {"samplers", "integrators"}
     if layer in {"film", "compare"}:

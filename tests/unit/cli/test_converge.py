@@ -1,0 +1,115 @@
+"""`artist converge`: options, files, messages. Times are as short as can be, and nothing depends on them."""
+
+import json
+import os
+from pathlib import Path
+
+import pytest
+
+from artist_py.cli.main import main
+from artist_py.evidence import reference
+from artist_py.film.reading import read_image
+
+SCENE = """
+[film]
+resolution = [12, 10]
+filter = "box"
+[camera]
+type = "pinhole"
+position = [0, -0.95, 0]
+look_at = [0, 1, 0]
+field_of_view = 80
+[render]
+max_path_length = 4
+[materials.wall]
+type = "diffuse"
+[[shapes]]
+type = "box"
+material = "wall"
+min = [-1, -1, -1]
+max = [1, 1, 1]
+reverse = true
+[[shapes]]
+type = "rectangle"
+corner = [-0.3, -0.3, 0.99]
+edges = [[0, 0.6, 0], [0.6, 0, 0]]
+emission = 5
+"""
+SHORT = ["--times", "0.02,0.04", "--make-reference", "0.05", "--threads", "1"]
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    """A folder with `room.toml`, where references are cached too."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(reference, "cache_root", lambda: tmp_path / "cache")
+    (tmp_path / "room.toml").write_text(SCENE)
+    return tmp_path
+
+
+def converge(*arguments):
+    """The exit code."""
+    return main(["converge", "room.toml", "-o", "out", *SHORT, *arguments])
+
+
+def test_files(here, capsys):
+    """What is written, and that settings of all and of one reach the renders."""
+    options = (
+        "--integrators pt,pt:hero_count=1 --repeat 2 --set render.seed=5 --size 8x6 --reference-integrator pt"
+    )
+    assert converge(*options.split()) == 0
+    assert {"convergence.csv", "convergence.json", "reference.exr", "images"} <= set(os.listdir("out"))
+    content = json.loads(Path("out/convergence.json").read_text())
+    assert {row["entry"] for row in content["rows"]} == {"pt", "pt:hero_count=1"}
+    assert {row["seed"] for row in content["rows"]} == {5, 6}
+    assert (content["about"]["width"], content["about"]["height"]) == (8, 6)
+    assert content["reference"]["integrators"] == ["pt"]
+    assert content["reference"]["relmse"] > 0
+    assert read_image("out/reference.exr").layer("variance").shape == (6, 8, 3)
+    err = capsys.readouterr().err
+    assert "pt:hero_count=1, repeat 2 of 2" in err
+    assert "reference by pt: 100%" in err
+
+
+def test_given_reference(here):
+    """It is used, nothing is rendered for one, and its error goes along."""
+    assert converge("--integrators", "pt", "--repeat", "1", "--reference-integrator", "pt") == 0
+    made = json.loads(Path("out/convergence.json").read_text())["reference"]
+    Path("out/reference.exr").rename("mine.exr")
+    arguments = [
+        "converge",
+        "room.toml",
+        "-o",
+        "b",
+        "--times",
+        "0.02",
+        "--repeat",
+        "1",
+        "--integrators",
+        "pt",
+    ]
+    assert main([*arguments, "--reference", "mine.exr", "-q"]) == 0
+    given = json.loads(Path("b/convergence.json").read_text())["reference"]
+    assert given["file"] == "mine.exr"
+    assert given["relmse"] == pytest.approx(made["relmse"], rel=1e-4)
+    assert not Path("b/reference.exr").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--integrators", "pt,vcmm"], "render.integrator"),
+        (["--integrators", "pt:hero_count"], "is not NAME:KEY=VALUE"),
+        (["--integrators", "pt:hero_cuont=4"], 'did you mean "hero_count"?'),
+        (["--integrators", "pt,pt:max_path_length=2"], "render other pictures (max_path_length differs)"),
+        (["--times", "1,soon"], "'soon' is not a duration"),
+        (["--reference", "a.exr"], "--reference and --make-reference exclude each other"),
+        (["--repeat", "0"], "0 is not in the range x>=1"),
+        (["-o", "room.toml/out"], "room.toml/out: cannot be made"),
+    ],
+)
+def test_bad_options(here, capsys, arguments, message):
+    """The message says what is wrong, before anything is rendered."""
+    assert converge(*arguments) in {1, 2}
+    assert message in capsys.readouterr().err
+    assert not Path("out/convergence.json").exists()

@@ -99,6 +99,37 @@ def test_cornell_paints_are_the_measured_ones():
         assert min(ends) - 1e-9 <= reflectance <= max(ends) + 1e-9
 
 
+# --- the pool ---------------------------------------------------------------------------------------------------------
+
+
+def test_water_of_the_pool_is_closed():
+    """Up to the corners that its sharp edges have twice; light that enters the water leaves it again."""
+    mesh = load_mesh(SCENES / "meshes" / "pool_water.ply")
+    assert mesh.warnings == () and mesh.normals is not None
+    _, index = np.unique(mesh.vertices, axis=0, return_inverse=True)
+    faces = index.reshape(-1)[mesh.faces]
+    edges = np.concatenate([faces[:, [i, (i + 1) % 3]] for i in range(3)])
+    forward, backward = ({tuple(edge) for edge in pairs.tolist()} for pairs in (edges, edges[:, ::-1]))
+    assert len(forward) == len(edges)
+    unpaired = {tuple(sorted(edge)) for edge in forward - backward}
+    # Only the seams between strips of the sides and the two triangles below, which lie on straight lines, are apart.
+    bottom = {i for edge in unpaired for i in edge}
+    lowest = np.unique(mesh.vertices, axis=0)[sorted(bottom)][:, 2]
+    assert (lowest == lowest.min()).all()
+
+
+def test_water_of_the_pool_is_what_the_script_makes(tmp_path):
+    committed = (SCENES / "meshes" / "pool_water.ply").read_bytes()
+    code = "import pathlib, sys; sys.path.insert(0, sys.argv[1]); import make_pool; "
+    code += "make_pool.TARGET = pathlib.Path(sys.argv[2]); make_pool.main()"
+    command = [sys.executable, "-c", code, ROOT / "scripts", tmp_path / "water.ply"]
+    subprocess.run(command, check=True, capture_output=True)
+    made, expected = load_mesh(tmp_path / "water.ply"), load_mesh(SCENES / "meshes" / "pool_water.ply")
+    assert len((tmp_path / "water.ply").read_bytes()) == len(committed)
+    np.testing.assert_allclose(made.vertices, expected.vertices, atol=1e-6)
+    assert np.array_equal(made.faces, expected.faces)
+
+
 # --- the mesh -----------------------------------------------------------------------------------------------------
 
 

@@ -39,7 +39,7 @@ def toml(value):
     return repr(int(value)) if isinstance(value, int | np.integer) else repr(float(value))
 
 
-def scene(shapes=(), *, materials=(), objects=(), instances=(), camera=None, film=(), render=()):
+def scene(shapes=(), *, emitters=(), materials=(), objects=(), instances=(), camera=None, film=(), render=()):
     """A `CompiledScene`. Absent settings are those of these tests, not those of the renderer.
 
     `shapes` is a list of tables as in a scene file, `objects` maps names to such lists; `materials` maps names to
@@ -53,6 +53,7 @@ def scene(shapes=(), *, materials=(), objects=(), instances=(), camera=None, fil
         "objects": {name: {"shapes": items} for name, items in dict(objects).items()},
         "shapes": list(shapes),
         "instances": list(instances),
+        "emitters": list(emitters),
     }
     lines = [f"{name} = {toml(value)}" for name, value in table.items()]
     return compile_scene(read_scene_text("\n".join(lines)))

@@ -7,6 +7,7 @@ import click
 from artist_py.cli.interrupt import INTERRUPTED, stop_signals
 from artist_py.cli.options import Duration, Exposure, Integers, Setting
 from artist_py.cli.progress import Budget, LineObserver, Observer, duration_text
+from artist_py.errors import OptionError
 
 DEFAULT_TIMES = "1,2,5,10,20,40"
 REFERENCE_FACTOR = 10  # times the longest time
@@ -98,7 +99,8 @@ def command(**options):  # click's way to pass options, by the names they have a
     """Measure error against time.
 
     Renders SCENE by each integrator, looks at the image on the way, and compares it with a reference. Measuring takes
-    no time of the render. Writes convergence.csv, convergence.json, reference.exr and images/.
+    no time of the render. Writes convergence.csv, convergence.json, reference.exr, images/ and, with the extra
+    `report`, plot.png, plot.svg and index.html, a page that shows everything.
 
     References are kept in the cache, by scene, size, path length and wavelengths, with the variance of their own noise.
     Errors that are as small as the reference's own are marked.
@@ -178,4 +180,32 @@ def _report(folder, run, options, observer):
     write_csv(folder / "convergence.csv", run)
     write_json(folder / "convergence.json", run)
     write_images(folder, run)
-    observer.note(f"wrote {folder}/convergence.csv and convergence.json")
+    if not run.rows:
+        observer.warning("interrupted before the first look: there is nothing to plot")
+        return
+    _print_table(run)
+    try:
+        _draw(folder, run, options, observer)
+    except OptionError as error:  # what is measured is safe; a library is absent
+        observer.warning(str(error))
+    observer.note(f"wrote {folder}")
+
+
+def _draw(folder, run, options, observer):
+    from artist_py.evidence.page import write_page
+    from artist_py.evidence.plots import write_plots
+
+    write_plots(folder, run)
+    for text in write_page(folder / "index.html", run, options["exposure"]):
+        observer.warning(text)
+
+
+def _print_table(run):
+    from artist_py.cli.tables import print_table
+    from artist_py.evidence.tables import convergence_table
+    from artist_py.evidence.words import band_text, notes
+
+    print_table(*convergence_table(run))
+    for note in notes(run):
+        click.echo(note)
+    click.echo(band_text(run))

@@ -55,9 +55,7 @@ def require_flip():
     import importlib.util
 
     if importlib.util.find_spec("flip_evaluator") is None:
-        raise OptionError(
-            "FLIP needs flip-evaluator, which is not installed: pip install 'artist-py[report]'"
-        )
+        raise OptionError("FLIP: flip-evaluator is not installed: pip install 'artist-py[report]'")
 
 
 def _clean(image, is_display):

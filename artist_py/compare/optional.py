@@ -12,5 +12,5 @@ def load_optional(module, purpose):
     except ImportError as error:
         top = module.partition(".")[0]
         raise OptionError(
-            f"{purpose} needs {top}, which is not installed ({error}): pip install 'artist-py[report]'"
+            f"{purpose}: {top} is not installed ({error}): pip install 'artist-py[report]'"
         ) from None

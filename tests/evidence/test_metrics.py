@@ -142,7 +142,7 @@ class TestOptional:
     def test_absent(self):
         """The message says what for, and how to get it."""
         with pytest.raises(
-            OptionError, match=r"plots needs no_such_module.*pip install 'artist-py\[report\]'"
+            OptionError, match=r"plots: no_such_module is not installed.*pip install 'artist-py\[report\]'"
         ):
             load_optional("no_such_module.part", "plots")
 

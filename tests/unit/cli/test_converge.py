@@ -2,6 +2,7 @@
 
 import json
 import os
+import sys
 from pathlib import Path
 
 import pytest
@@ -58,7 +59,9 @@ def test_files(here, capsys):
         "--integrators pt,pt:hero_count=1 --repeat 2 --set render.seed=5 --size 8x6 --reference-integrator pt"
     )
     assert converge(*options.split()) == 0
-    assert {"convergence.csv", "convergence.json", "reference.exr", "images"} <= set(os.listdir("out"))
+    assert set(os.listdir("out")) == {
+        "convergence.csv", "convergence.json", "images", "index.html", "plot.png", "plot.svg", "reference.exr"
+    }  # fmt: skip
     content = json.loads(Path("out/convergence.json").read_text())
     assert {row["entry"] for row in content["rows"]} == {"pt", "pt:hero_count=1"}
     assert {row["seed"] for row in content["rows"]} == {5, 6}
@@ -66,9 +69,20 @@ def test_files(here, capsys):
     assert content["reference"]["integrators"] == ["pt"]
     assert content["reference"]["relmse"] > 0
     assert read_image("out/reference.exr").layer("variance").shape == (6, 8, 3)
-    err = capsys.readouterr().err
+    out, err = capsys.readouterr()
+    assert "relMSE after" in out
+    assert "Reference: pt" in out
     assert "pt:hero_count=1, repeat 2 of 2" in err
     assert "reference by pt: 100%" in err
+
+
+def test_without_matplotlib(here, monkeypatch, capsys):
+    """What is measured is kept and printed; the warning says what is missing and how to get it."""
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    assert converge("--integrators", "pt", "--repeat", "1", "--reference-integrator", "pt") == 0
+    assert "warning: plots: matplotlib is not installed" in capsys.readouterr().err
+    assert Path("out/convergence.json").exists()
+    assert not Path("out/plot.png").exists()
 
 
 def test_given_reference(here):

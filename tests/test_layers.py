@@ -19,9 +19,11 @@ FILES = sorted(str(path.relative_to(PACKAGE)) for path in PACKAGE.rglob("*.py"))
 def allowed(layer):
     """Layers that files of `layer` may import; `scene.tables` counts as a layer of its own."""
     if layer in {"cli", "__init__", "__main__"}:
-        return {*KERNEL_LAYERS, "scene", "scene.tables", "film", "compare", "evidence", "cli"}
+        return {*KERNEL_LAYERS, "scene", "scene.tables", "film", "compare", "evidence", "stress", "cli"}
     if layer == "evidence":
         return {"evidence", "compare", "samplers", "scene", "film", "jit"}
+    if layer == "stress":
+        return {"stress", "samplers", "scene", "film"}
     if layer == "scene":
         return {*KERNEL_LAYERS, "scene", "scene.tables", "film"} - {"samplers", "integrators"}
     if layer in {"film", "compare"}:

@@ -1,0 +1,119 @@
+"""`artist stress`: extreme scenes with all integrators, and whether each came out right."""
+
+import os
+import time
+
+import click
+
+from artist_py.errors import OptionError, OutputError
+
+STYLES = {"ok": "green", "too noisy": "yellow"}  # whatever else is wrong is red
+WRONG = 1
+
+
+@click.command()
+@click.option("--quick", "extent", flag_value="quick", default=True, help="What takes minutes; the default.")
+@click.option(
+    "--full", "extent", flag_value="full", help="All cases: also 1e7 triangles, and 1e5 points of light."
+)
+@click.option(
+    "--only", multiple=True, metavar="NAME", help="Cases whose name has NAME in it; may be repeated."
+)
+@click.option(
+    "--integrator", "integrators", multiple=True, metavar="NAME", help="Only this one; may be repeated."
+)
+@click.option(
+    "-o", "--output", type=click.Path(), metavar="FILE.html", help="Write the report as an HTML page."
+)
+@click.option("--seed", type=click.IntRange(min=0), default=1, help="Another seed is an independent run.")
+@click.option("--threads", type=click.IntRange(min=1), metavar="N", help="Threads. Default: all processors.")
+@click.option(
+    "--list", "only_list", is_flag=True, help="Print the cases and what they show, and run nothing."
+)
+def command(extent, only, integrators, output, seed, threads, only_list):
+    """Render extreme scenes with all integrators.
+
+    Tiny lamps, huge scales, odd glass, degenerate triangles and the like: each must give the right picture or a
+    clear message. Images are compared with closed forms, or with another integrator, by Z-tests: a correct program
+    fails a run by chance with probability 0.001. The exit code is 1 if anything is wrong.
+    """
+    if output and not output.endswith(".html"):
+        raise OptionError(f"--output: {output}: expected a name that ends in .html")
+    cases = _chosen(extent, only)
+    _check_integrators(integrators)
+    if only_list:
+        for case in cases:
+            click.echo(f"{case.name}: {case.shows} Expected: {case.expect}.")
+        return 0
+    return _run(cases, integrators, output, seed, threads or _processors())
+
+
+def _chosen(extent, only):
+    from artist_py.stress.cases import CASES
+
+    unknown = [name for name in only if not any(name in case.name for case in CASES)]
+    if unknown:
+        raise OptionError(f"--only: no case has {', '.join(unknown)} in its name; --list --full shows all")
+    if only:
+        return [case for case in CASES if any(name in case.name for name in only)]
+    return [case for case in CASES if case.quick or extent == "full"]
+
+
+def _check_integrators(integrators):
+    from artist_py.stress.case import INTEGRATORS
+
+    for name in integrators:
+        if name not in INTEGRATORS:
+            raise OptionError(
+                f"--integrator: unknown integrator {name}, expected one of {', '.join(INTEGRATORS)}"
+            )
+
+
+def _run(cases, integrators, output, seed, threads):
+    from artist_py.stress.matrix import Matrix
+    from artist_py.stress.runner import run_cells
+
+    begun = time.monotonic()
+    matrix = Matrix(cases, integrators or None)
+    for cell in run_cells(cases, seed, threads, integrators or None):
+        matrix.add(cell)
+        verdict = matrix.verdict(cell)
+        click.echo(f"{cell.case.name} {cell.integrator}: {verdict.status}", err=True)
+    seconds = time.monotonic() - begun
+    _print(matrix, seconds)
+    if output:
+        _write(matrix, seconds, output)
+    return 0 if matrix.is_ok else WRONG
+
+
+def _print(matrix, seconds):
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    console = Console(soft_wrap=False, highlight=False)
+    width = None if console.is_terminal else 200
+    table = Table("case", "expected", *matrix.integrators)
+    for case in matrix.cases:
+        cells = [matrix.text(case, name) for name in matrix.integrators]
+        table.add_row(
+            Text(case.name), Text(str(case.expect)), *(Text(t, STYLES.get(s, "red")) for s, t in cells)
+        )
+    console.print(table, width=width)
+    for case, name, verdict in matrix.faults():
+        click.echo(f"{case.name}, {name}: {verdict.status}: {verdict.text}")
+    click.echo(f"{matrix.summary} ({seconds:.0f} s)")
+
+
+def _write(matrix, seconds, output):
+    from artist_py.stress.report import page
+
+    try:
+        with open(output, "w", encoding="utf-8") as file:
+            file.write(page(matrix, seconds))
+    except OSError as error:
+        raise OutputError(f"{output}: {error.strerror}") from None
+
+
+def _processors():
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()

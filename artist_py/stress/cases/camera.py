@@ -1,0 +1,52 @@
+"""Cameras and images at the ends of what they can be."""
+
+from artist_py.stress.case import Case, Radiance
+from artist_py.stress.scenes import furnace, look
+
+NARROW = "no photon ever falls into the eye's narrow view"
+
+
+def seen(field_of_view=60.0, **film):
+    """A furnace, through a camera of that field of view, on that film."""
+    return furnace(camera=look([0.3, -0.3, 0.1], [-0.1, 0.6, 0.2], field_of_view), film=film)
+
+
+CASES = (
+    Case(
+        "field-of-view-0.01",
+        "The narrowest view.",
+        seen(0.01),
+        Radiance(1),
+        left_out={"lt": NARROW},
+    ),
+    Case("field-of-view-179", "The widest.", seen(179.0), Radiance(1)),
+    Case("field-of-view-179.99", "Beyond reason.", seen(179.99), Radiance(1)),
+    Case("pixels-1x1", "One pixel.", seen(resolution=[1, 1]), Radiance(1)),
+    Case(
+        "pixels-1x10000",
+        "A column of ten thousand pixels, whose ends are seen at 89.99 degrees.",
+        seen(resolution=[1, 10_000]),
+        Radiance(1),
+    ),
+    Case("pixels-10000x1", "A row of them.", seen(resolution=[10_000, 1]), Radiance(1)),
+    Case("crop-1x1", "One pixel of many.", seen(resolution=[64, 64], crop=[17, 18, 40, 41]), Radiance(1)),
+    Case(
+        "crop-corner",
+        "The last pixel, with a filter that reaches over the edge.",
+        seen(resolution=[64, 64], crop=[63, 64, 63, 64], filter="blackman-harris"),
+        Radiance(1),
+    ),
+    Case(
+        "crop-of-65536",
+        "One pixel of the largest image there is.",
+        seen(resolution=[65536, 65536], crop=[30000, 30001, 30000, 30001]),
+        Radiance(1),
+        left_out={"lt": NARROW},
+    ),
+    Case(
+        "filter-radius-32",
+        "A filter larger than the image.",
+        seen(filter="gaussian", filter_radius=32),
+        Radiance(1),
+    ),
+)

@@ -1,0 +1,133 @@
+"""The command `artist stress`: what is right is reported as right, and what is wrong as wrong, crashes included.
+
+Fixed seeds; a correct program fails by chance with probability 1e-3 in each run of the command.
+"""
+
+import dataclasses
+import re
+
+import faults
+import pytest
+
+from artist_py.cli.main import main
+from artist_py.errors import SceneError
+from artist_py.scene.reader import read_scene_text
+from artist_py.stress import cases, runner
+from artist_py.stress.case import ALL, Case, Radiance, Refusal
+from artist_py.stress.measure import scene_text
+from artist_py.stress.scenes import furnace
+
+# As tests/furnace/test_closed_rooms.py has them, so that they share their kernels.
+SMALL = furnace(aside=None, film={"resolution": [8, 8]})
+RIGHT = Case("right", "A furnace.", SMALL, Radiance(1.0), integrators=("pt",))
+TOO_BRIGHT = dataclasses.replace(RIGHT, name="too-bright", expect=Radiance(1.2))
+
+
+@pytest.fixture
+def run(monkeypatch, capsys):
+    """Runs the command on these cases; `(exit code, standard output)`."""
+
+    def run(*chosen, options=()):
+        monkeypatch.setattr(cases, "CASES", chosen)
+        code = main(["stress", *options])
+        return code, capsys.readouterr().out
+
+    return run
+
+
+@pytest.fixture
+def faulty():
+    """A case that does `what` where it should write a file."""
+    return lambda what, **more: dataclasses.replace(
+        RIGHT, name=what.__name__, files=(("x", what, ()),), **more
+    )
+
+
+def test_right_and_wrong(run, tmp_path):
+    """One row each; the page holds both and needs nothing else."""
+    page = tmp_path / "report.html"
+    code, out = run(RIGHT, TOO_BRIGHT, options=["-o", str(page)])
+    assert code == 1
+    assert re.search(r"right .* ok \d\.\d se", out)
+    assert re.search(r"too-bright, pt: wrong: (1\.0|0\.9)\d* instead of 1\.2", out)
+    assert "1 of 2 cells are wrong" in out
+    html = page.read_text(encoding="utf-8")
+    assert html.count("data:image/png;base64,") == 2
+    assert "too-bright" in html
+    assert not re.search(r'(src|href)="(?!data:)', html)
+
+
+def test_all_right(run):
+    """A refusal that is expected is right too."""
+    refused = Case(
+        "no", "Nothing.", furnace(render={"max_path_length": 0}), Refusal("max_path_length"), ("vcm",)
+    )
+    code, out = run(RIGHT, refused)
+    assert code == 0
+    assert "all 2 cells are right" in out
+
+
+def test_crashes_hangs_and_errors_do_not_end_it(run, faulty, monkeypatch):
+    """Each is told, and the next case is run."""
+    monkeypatch.setattr(runner, "COMPILE_SECONDS", 30.0)
+    code, out = run(faulty(faults.crash), faulty(faults.fail), faulty(faults.hang, seconds=-25.0), RIGHT)
+    assert code == 1
+    assert "crash, pt: crashed: signal SIGABRT" in out
+    assert "fail, pt: error: ZeroDivisionError: on purpose" in out
+    assert "hang, pt: hung: no result after" in out
+    assert "3 of 4 cells are wrong" in out
+
+
+def test_a_scene_that_is_refused_but_should_not_be(run):
+    bad = dataclasses.replace(RIGHT, scene=furnace(albedo=1.5, emission=1))
+    code, out = run(bad)
+    assert code == 1
+    assert "refused" in out and "0 <= reflectance <= 1" in out
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--only", "nothing-like-that"], "nothing-like-that"),
+        (["--integrator", "mlt"], "expected one of pt"),
+        (["-o", "report.pdf"], "ends in .html"),
+    ],
+)
+def test_bad_options(options, message, capsys):
+    assert main(["stress", *options]) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_list(capsys):
+    """Everything is in the full list, and most in the quick one."""
+    assert main(["stress", "--list", "--full"]) == 0
+    full = capsys.readouterr().out
+    assert main(["stress", "--list"]) == 0
+    quick = capsys.readouterr().out
+    assert "triangles-1e7: " in full
+    assert "triangles-1e7: " not in quick
+    assert len(quick.splitlines()) > 80
+
+
+def test_cases_are_well_formed():
+    """Names are unique, biases and leavings out have reasons, and only what must be refused is."""
+    names = [case.name for case in cases.CASES]
+    assert len(set(names)) == len(names)
+    for case in cases.CASES:
+        assert case.integrators, case.name
+        assert case.why or not (getattr(case.expect, "bias", {}) or str(case.expect).startswith("finite")), (
+            case.name
+        )
+        assert set(case.left_out) <= set(ALL), case.name
+        text = scene_text(case, case.integrators[0], 1)
+        if not isinstance(case.expect, Refusal):
+            read_scene_text(text, case.name)
+
+
+def test_refused_scenes_are_refused_for_the_reason_given():
+    """Those that reading alone shows; the others are about files."""
+    refused = [case for case in cases.CASES if isinstance(case.expect, Refusal) and not case.files]
+    assert len(refused) > 5
+    for case in refused:
+        with pytest.raises(SceneError, match=case.expect.text):
+            read_scene_text(scene_text(case, "vcm", 1), case.name)

@@ -31,7 +31,8 @@ class Row(NamedTuple):
     paths: int
     rays: int
     shadow_rays: int
-    peak_memory_bytes: int
+    peak_memory_bytes: int  # of the process
+    render_memory_bytes: int  # of that, what the render took
     relmse: float
     own_relmse: float | None  # without what the reference adds; None where nothing is left
     smape: float
@@ -142,6 +143,7 @@ def _row(snapshot, label, repeat, seed, reference):
         rays=snapshot.rays,
         shadow_rays=snapshot.shadow_rays,
         peak_memory_bytes=snapshot.peak_memory_bytes,
+        render_memory_bytes=snapshot.render_memory_bytes,
         relmse=error,
         own_relmse=own if own == own else None,  # noqa: PLR0124 - NaN
         smape=smape(rgb, reference.rgb),

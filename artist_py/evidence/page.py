@@ -220,7 +220,7 @@ def _last_table(convergence, pictures):
                 escape(slope_text(fits[entry.label]["relmse"])),
                 "" if ratio is None else f"{figures(ratio)} x",
                 figures(cell["rays"] / cell["wall_seconds"] / 1e6),
-                memory(cell["peak_memory_bytes"]),
+                memory(cell["render_memory_bytes"]),
             ])  # fmt: skip
     return _table(header, lines)
 
@@ -247,7 +247,7 @@ def _full_table(convergence):
             "" if cell["own_relmse"] is None else figures(cell["own_relmse"]),
             _error(cell, "smape"),
             figures(cell["rays"] / 1e6),
-            memory(cell["peak_memory_bytes"]),
+            memory(cell["render_memory_bytes"]),
         ]
         for cell in summary(convergence)
     ]

@@ -98,6 +98,7 @@ def _cell(label, mark, rows):
         "is_below_reference": any(row.is_below_reference for row in rows),
         "rays": median("rays") + median("shadow_rays"),
         "peak_memory_bytes": max(row.peak_memory_bytes for row in rows),
+        "render_memory_bytes": max(row.render_memory_bytes for row in rows),
     }
 
 

@@ -23,9 +23,8 @@ class Snapshot:
     cpu_seconds: float  # of all threads
     rays: int  # closest hits
     shadow_rays: int
-    peak_memory_bytes: (
-        int  # of the process, since this render began; since its start where the system cannot tell
-    )
+    peak_memory_bytes: int  # of the process, since its kernels were ready
+    render_memory_bytes: int  # what this added to the process since then: film, subpaths, photons
     noise: float | None  # relMSE, as the film estimates it of itself
     compile_seconds: float
 
@@ -42,9 +41,11 @@ def snapshots(compiled, settings, marks, axis="wall", observer=None, stop=None):
     """
     observer = observer or Silence()
     film, marks = film_of(compiled, settings), sorted(marks)
-    reset_peak_memory()
     with sampler_for(compiled, film, settings, observer) as sampler:
         compile_seconds = sampler.compile_kernels(observer)
+        reset_peak_memory()
+        # Arrays that nobody has written to yet are not in memory yet.
+        before = resident_memory()
         spent = {"wall": 0.0, "cpu": 0.0, "iterations": 0}
         while marks and not (stop is not None and stop.is_set()):
             if not _timed_iteration(sampler, film, spent, stop):
@@ -52,7 +53,8 @@ def snapshots(compiled, settings, marks, axis="wall", observer=None, stop=None):
             passed = [mark for mark in marks if mark <= spent[axis]]
             if passed:
                 marks = marks[len(passed) :]
-                yield _snapshot(compiled, settings, film, sampler, spent, passed[-1], compile_seconds)
+                image = film_image(compiled, settings, film, {})
+                yield _snapshot(image, film, sampler, spent, passed[-1], compile_seconds, before)
 
 
 def _timed_iteration(sampler, film, spent, stop):
@@ -64,17 +66,19 @@ def _timed_iteration(sampler, film, spent, stop):
     return is_whole
 
 
-def _snapshot(compiled, settings, film, sampler, spent, mark, compile_seconds):
+def _snapshot(image, film, sampler, spent, mark, compile_seconds, memory_before):
     rays, shadow_rays = sampler.rays
+    peak = peak_memory()
     return Snapshot(
         mark=mark,
-        film=film_image(compiled, settings, film, {}),
+        film=image,
         iterations=film.iterations,
         wall_seconds=spent["wall"],
         cpu_seconds=spent["cpu"],
         rays=rays,
         shadow_rays=shadow_rays,
-        peak_memory_bytes=peak_memory(),
+        peak_memory_bytes=peak,
+        render_memory_bytes=max(0, peak - memory_before),
         noise=film.error_estimate(),
         compile_seconds=compile_seconds,
     )
@@ -88,7 +92,17 @@ def reset_peak_memory():
 
 def peak_memory():
     """The highest resident memory of the process since `reset_peak_memory`, bytes."""
+    return _status("VmHWM")
+
+
+def resident_memory():
+    """Resident memory of the process, bytes."""
+    return _status("VmRSS")
+
+
+def _status(field):
+    """A size in Linux's account of the process; elsewhere the highest resident memory since its start."""
     with suppress(OSError, StopIteration):
         lines = Path("/proc/self/status").read_text().splitlines()
-        return int(next(line for line in lines if line.startswith("VmHWM:")).split()[1]) * 1024
+        return int(next(line for line in lines if line.startswith(f"{field}:")).split()[1]) * 1024
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024

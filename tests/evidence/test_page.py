@@ -33,7 +33,7 @@ def made_up(names=NAMES, repeats=3):
                 error = 0.1 * (number + 1) * (1 + 0.1 * repeat) / mark
                 below = number == 0 and mark == MARKS[-1]
                 rows.append(
-                    Row(name, repeat, repeat, mark, mark, 2 * mark, int(10 * mark), 1000, 50_000, 30_000, 2**28,
+                    Row(name, repeat, repeat, mark, mark, 2 * mark, int(10 * mark), 1000, 50_000, 30_000, 2**28, 2**24,
                         error, error - 0.01, error**0.5, 0.9 * error, below, 0)
                 )  # fmt: skip
                 images[name, mark] = np.tile(np.float32(COLORS[name]), (*SIZE, 1)) * np.float32(mark / 4)

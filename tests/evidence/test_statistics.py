@@ -17,7 +17,7 @@ def row(entry="pt", repeat=0, mark=1.0, relmse=0.1, own=None, wall=None, below=F
     """A row with an error, and something in the other fields."""
     wall = mark if wall is None else wall
     own = relmse if own is None else own
-    return Row(entry, repeat, repeat, mark, wall, 2 * wall, 10, 1000, 50, 30, 10**8, relmse, own, math.sqrt(relmse),
+    return Row(entry, repeat, repeat, mark, wall, 2 * wall, 10, 1000, 50, 30, 10**8, 10**7, relmse, own, relmse**0.5,
                None, below, 0)  # fmt: skip
 
 

@@ -105,6 +105,8 @@ def compile_scene(graph, threads=None):
     if scene.needs.media and scene.emitters is not None:
         emitters.place_in_media(scene)
     geometry.warnings += method_warnings(graph.render.integrator, scene)
+    if not emitters.light.any():
+        geometry.warnings.append(f"nothing emits light from {first} to {last} nm: the image will be black")
     nodes = inverse_cdf(wavelength_density(sensor, emitters.light), first)
     return CompiledScene(
         graph,

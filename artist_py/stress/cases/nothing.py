@@ -4,6 +4,7 @@ from artist_py.stress.case import Case, Radiance, Refusal
 from artist_py.stress.meshes import write_ply
 from artist_py.stress.scenes import VIEW, furnace, look, scene, shape
 
+BLACK = "the image will be black"
 WALL = shape("sphere", "grey", center=[0, 0, 0], radius=1, reverse=True)
 
 
@@ -13,8 +14,8 @@ def refused(name, shows, text, tables, **more):
 
 
 CASES = (
-    Case("empty", "No shape and no light.", scene([], VIEW, aside=None), Radiance(0)),
-    Case("no-emitter", "Walls and no light.", scene([WALL], VIEW, aside=None), Radiance(0)),
+    Case("empty", "No shape and no light.", scene([], VIEW, aside=None), Radiance(0), warning=BLACK),
+    Case("no-emitter", "Walls and no light.", scene([WALL], VIEW, aside=None), Radiance(0), warning=BLACK),
     Case(
         "environment-alone",
         "No shape, and light from everywhere.",

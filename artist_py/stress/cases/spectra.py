@@ -3,6 +3,7 @@
 from artist_py.stress.case import Case, Radiance
 from artist_py.stress.scenes import furnace
 
+BLACK = "the image will be black"
 VISIBLE = [380, 780]
 WITH_ULTRAVIOLET = [300, 780]
 WHITE_LUMINANCE = 72983.4866019817  # cd/m2 of a flat spectrum of radiance 1
@@ -37,8 +38,9 @@ CASES = (
         "The same, where 301 nm are not rendered.",
         lit_by(lines(301.0)),
         Radiance(0),
+        warning=BLACK,
     ),
-    Case("no-light", "Lamps that emit nothing.", lit_by(0.0), Radiance(0)),
+    Case("no-light", "Lamps that emit nothing.", lit_by(0.0), Radiance(0), warning=BLACK),
     Case(
         "one-bin-of-830",
         "The last nanometre there is.",

@@ -5,7 +5,7 @@ import subprocess
 import sys
 import time
 import zlib
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from artist_py.stress.toml import to_toml
 BATCHES = 32
 PILOT = 16  # iterations that say how many are needed
 SAFETY = 2.0  # times as many as the pilot says
+TIME_SHARE = 0.5  # of the seconds after which a cell counts as hung, to be spent at most
 REGIONS = 2  # along each side of the image
 NEGATIVE = 1e-5  # of the pixel's largest channel: rounding, not light
 # From linear sRGB to XYZ: where a radiance is not negative neither is any of these, whatever RGB says.
@@ -40,13 +41,12 @@ class Measurement:
     iterations: int = 0
     non_finite: int = 0
     negative: int = 0
-    rays: int = 0
     seconds: float = 0.0
+    render_seconds: float = 0.0
     compile_seconds: float = 0.0
     warnings: tuple = ()
     message: str = ""  # what the renderer said instead of rendering
     code: int = 0
-    failures: list = field(default_factory=list)
 
 
 def measure(case, integrator, seed, folder, threads, started=lambda: None):
@@ -61,7 +61,9 @@ def measure(case, integrator, seed, folder, threads, started=lambda: None):
     compiled = compile_scene(read_scene_text(text, str(folder / "scene.toml")), threads)
     result = Measurement(warnings=tuple(compiled.warnings))
     pilot = _run(compiled, PILOT, PILOT, threads, result, started, stream=1)
-    wanted = _iterations(pilot[:, -1], case)
+    started()
+    affordable = PILOT * TIME_SHARE * case.seconds / max(result.render_seconds, 1e-9)
+    wanted = _iterations(pilot[:, -1], case, affordable)
     result.means = _run(compiled, wanted, BATCHES, threads, result, started)
     result.iterations, result.seconds = wanted, time.monotonic() - begun
     return result
@@ -101,13 +103,17 @@ def refused(text, folder, begun, limit):
     return Measurement(message=(done.stdout + done.stderr).strip(), code=done.returncode, seconds=seconds)
 
 
-def _iterations(means, case):
-    """How many iterations reach the precision, from means of single ones; a multiple of `BATCHES`."""
+def _iterations(means, case, affordable):
+    """How many iterations reach the precision, from means of single ones; a multiple of `BATCHES`.
+
+    They may be fewer where time is short; then the verdict will be that the cell is too noisy.
+    """
     mean, spread = abs(means.mean()), means.std(ddof=1)
     needed = SAFETY * (spread / (case.precision * mean)) ** 2 if mean > 0.0 else 0.0
-    needed = (
-        min(max(needed, case.least, BATCHES), max(case.most, BATCHES)) if math.isfinite(needed) else BATCHES
-    )
+    if not math.isfinite(needed):
+        return BATCHES
+    most = min(max(case.most, BATCHES), affordable)
+    needed = min(max(needed, case.least, BATCHES), most)
     return BATCHES * math.ceil(needed / BATCHES)
 
 
@@ -128,6 +134,7 @@ def _run(compiled, iterations, batches, threads, result, started, stream=0):
         sampler.seed += stream
         result.compile_seconds += sampler.compile_kernels(Silence())
         started()
+        begun = time.monotonic()
         for i in range(iterations):
             sampler.iterate(i)
             result.negative += count_negative(sampler.image)
@@ -135,7 +142,7 @@ def _run(compiled, iterations, batches, threads, result, started, stream=0):
                 luminance = (film.sums - before) @ TO_XYZ[1] / (white * (iterations // batches))
                 means.append(region_means(luminance))
                 before = film.sums.copy()
-        result.rays += sum(sampler.rays)
+        result.render_seconds += time.monotonic() - begun
     result.non_finite += film.rejected_count
     result.picture = film.mean() @ TO_XYZ[1] / white
     return np.array(means)

@@ -5,6 +5,7 @@ import math
 from artist_py.stress.case import Case, Radiance, SameAs, Sane
 from artist_py.stress.scenes import furnace, look, scene, shape
 
+BELOW = (0.0, 0.0, -0.5)
 FLOOR = {"corner": [-0.5, -0.5, 0], "edges": [[1, 0, 0], [0, 1, 0]]}
 
 
@@ -24,7 +25,9 @@ def seen_plate(degrees, field_of_view, **material):
 def grazing_light(radians):
     """Parallel light `radians` above a floor of reflectance 0.5, as bright as makes the radiance 1."""
     sun = {"type": "directional", "direction": [1, 0, -radians], "spectrum": 2 * math.pi / math.sin(radians)}
-    return scene([shape("rectangle", "grey", **FLOOR)], look([0, 0, 0.4], [0, 0, 0], 40), emitters=[sun])
+    return scene(
+        [shape("rectangle", "grey", **FLOOR)], look([0, 0, 0.4], [0, 0, 0], 40), emitters=[sun], aside=BELOW
+    )
 
 
 def eye_level(height, material):

@@ -10,7 +10,7 @@ from artist_py.cli.interrupt import INTERRUPTED
 from artist_py.errors import ArtistError
 from artist_py.version import __version__
 
-SUBCOMMANDS = ("render", "check", "info", "tonemap", "diff", "converge", "stress", "warm")
+SUBCOMMANDS = ("render", "check", "info", "tonemap", "diff", "converge", "compare", "stress", "warm")
 INTERNAL_ERROR = 1
 BAD_INPUT = 2
 

@@ -17,6 +17,7 @@ from artist_py.film.replacing import replacing
 from artist_py.film.sidecar import write_sidecar
 
 KIND = "artist converge"
+ABLATION_KIND = "artist converge --ablate"
 
 
 def prepare_folder(path):
@@ -103,6 +104,19 @@ def _convergence(content):
         {each["label"]: each["compile_seconds"] for each in content["entries"]},
         is_interrupted=content["is_interrupted"],
     )
+
+
+def write_ablation(folder, scene, about, costs):
+    """Write ablation.csv and ablation.json."""
+    with (
+        replacing(folder / "ablation.csv") as temporary,
+        temporary.open("w", newline="", encoding="utf-8") as stream,
+    ):
+        writer = csv.writer(stream)
+        writer.writerow(costs[0]._fields)
+        writer.writerows(costs)
+    content = {"kind": ABLATION_KIND, "version": VERSION, "scene": str(scene), "about": about}
+    write_sidecar(folder / "ablation.json", {**content, "costs": [cost._asdict() for cost in costs]})
 
 
 def write_images(folder, convergence):

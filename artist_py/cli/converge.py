@@ -88,6 +88,14 @@ OPTIONS = (
         ["--exposure"], type=Exposure(), default=0.0, help="Exposure of the page's images, or auto."
     ),
     click.Option(
+        ["--ablate"],
+        is_flag=True,
+        help="Instead, measure what it would cost to have what SCENE does not need: dispersion, a lens, surroundings "
+        "that emit, merging. Each is forced in so that the picture stays the same, for the longest of --times, and "
+        "compiled from an empty cache. Writes ablation.csv and ablation.json.",
+    ),
+    click.Option(["--skip-compile-times"], is_flag=True, help="With --ablate: leave out what takes long."),
+    click.Option(
         ["-o", "--output"], type=click.Path(), required=True, metavar="OUTDIR", help="Folder of results."
     ),
     click.Option(["-q", "--quiet"], is_flag=True, help="Print nothing but the table, warnings and errors."),
@@ -115,6 +123,8 @@ def command(**options):  # click's way to pass options, by the names they have a
     budget = Budget(None, None, None)
     observer = (Observer if options["quiet"] else Talk)(budget, save=lambda _film: None)
     with stop_signals() as stop:
+        if options["ablate"]:
+            return _ablate(options, entries, folder, observer, stop)
         run = _run(options, entries, folder, observer, stop)
     _report(folder, run, options, observer)
     return INTERRUPTED if run.is_interrupted else 0
@@ -125,10 +135,7 @@ def _run(options, entries, folder, observer, stop):
     from artist_py.evidence.entries import Entry, compile_entry
     from artist_py.evidence.reference import make_reference, read_reference, write_reference
 
-    threads = options["threads"] or len(os.sched_getaffinity(0))
-    overrides = list(options["settings"])
-    if options["size"]:
-        overrides.append(("film.resolution", options["size"]))
+    threads, overrides = _threads(options), _overrides(options)
     compiled = compile_entries(options["scene"], entries, overrides, threads)
     first = compiled[entries[0].label]
 
@@ -165,6 +172,39 @@ def _run(options, entries, folder, observer, stop):
         observer=observer,
         stop=stop,
     )
+
+
+def _ablate(options, entries, folder, observer, stop):
+    from artist_py.cli.tables import print_table
+    from artist_py.evidence.ablation import ablate, ablation_table
+    from artist_py.evidence.convergence import about, compile_entries
+    from artist_py.evidence.files import write_ablation
+
+    threads, overrides = _threads(options), _overrides(options)
+    compiled = compile_entries(options["scene"], entries, overrides, threads)
+    costs = ablate(
+        options["scene"],
+        entries,
+        overrides,
+        seconds=max(options["times"]),
+        threads=threads,
+        with_compile_times=not options["skip_compile_times"],
+        observer=observer,
+        stop=stop,
+    )
+    if costs:
+        write_ablation(folder, options["scene"], about(compiled, threads), costs)
+        print_table(*ablation_table(costs), left=2)
+    return INTERRUPTED if stop.is_set() else 0
+
+
+def _threads(options):
+    return options["threads"] or len(os.sched_getaffinity(0))
+
+
+def _overrides(options):
+    size = [("film.resolution", options["size"])] if options["size"] else []
+    return [*options["settings"], *size]
 
 
 def _announce(observer, options, entries, seconds):

@@ -1,6 +1,5 @@
 """`artist stress`: extreme scenes with all integrators, and whether each came out right."""
 
-import os
 import time
 
 import click
@@ -17,7 +16,10 @@ WRONG = 1
     "--full", "extent", flag_value="full", help="All cases: also 1e7 triangles, and 1e5 points of light."
 )
 @click.option(
-    "--only", multiple=True, metavar="NAME", help="Cases whose name has NAME in it; may be repeated."
+    "--only",
+    multiple=True,
+    metavar="NAME",
+    help="Only the case NAME, or those with NAME in their names; may be repeated.",
 )
 @click.option(
     "--integrator", "integrators", multiple=True, metavar="NAME", help="Only this one; may be repeated."
@@ -26,7 +28,7 @@ WRONG = 1
     "-o", "--output", type=click.Path(), metavar="FILE.html", help="Write the report as an HTML page."
 )
 @click.option("--seed", type=click.IntRange(min=0), default=1, help="Another seed is an independent run.")
-@click.option("--threads", type=click.IntRange(min=1), metavar="N", help="Threads. Default: all processors.")
+@click.option("--threads", type=click.IntRange(min=1), default=1, help="Images are small: one is fastest.")
 @click.option(
     "--list", "only_list", is_flag=True, help="Print the cases and what they show, and run nothing."
 )
@@ -45,17 +47,23 @@ def command(extent, only, integrators, output, seed, threads, only_list):
         for case in cases:
             click.echo(f"{case.name}: {case.shows} Expected: {case.expect}.")
         return 0
-    return _run(cases, integrators, output, seed, threads or _processors())
+    return _run(cases, integrators, output, seed, threads)
 
 
 def _chosen(extent, only):
     from artist_py.stress.cases import CASES
 
-    unknown = [name for name in only if not any(name in case.name for case in CASES)]
-    if unknown:
-        raise OptionError(f"--only: no case has {', '.join(unknown)} in its name; --list --full shows all")
+    chosen = set()
+    for name in only:
+        # A whole name is itself alone, though it may be part of others.
+        found = [case.name for case in CASES if name == case.name] or [
+            c.name for c in CASES if name in c.name
+        ]
+        if not found:
+            raise OptionError(f"--only: no case has {name} in its name; --list --full shows all")
+        chosen.update(found)
     if only:
-        return [case for case in CASES if any(name in case.name for name in only)]
+        return [case for case in CASES if case.name in chosen]
     return [case for case in CASES if case.quick or extent == "full"]
 
 
@@ -77,13 +85,18 @@ def _run(cases, integrators, output, seed, threads):
     matrix = Matrix(cases, integrators or None)
     for cell in run_cells(cases, seed, threads, integrators or None):
         matrix.add(cell)
-        verdict = matrix.verdict(cell)
-        click.echo(f"{cell.case.name} {cell.integrator}: {verdict.status}", err=True)
+        click.echo(f"{cell.case.name}, {cell.integrator}: {_in_words(matrix, cell)}", err=True)
     seconds = time.monotonic() - begun
     _print(matrix, seconds)
     if output:
         _write(matrix, seconds, output)
     return 0 if matrix.is_ok else WRONG
+
+
+def _in_words(matrix, cell):
+    verdict = matrix.verdict(cell)
+    _, text = matrix.text(cell.case, cell.integrator)
+    return text if verdict.is_ok else f"{text}: {verdict.text}"
 
 
 def _print(matrix, seconds):
@@ -113,7 +126,3 @@ def _write(matrix, seconds, output):
             file.write(page(matrix, seconds))
     except OSError as error:
         raise OutputError(f"{output}: {error.strerror}") from None
-
-
-def _processors():
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()

@@ -92,7 +92,7 @@ def scene(shapes, camera, *, materials=(), emitters=(), film=(), render=(), asid
             "sampler": "independent",
             "wavelength_range": MONOCHROME,
             "max_path_length": EDGES,
-            "merging": {"radius": 0.05},
+            "merging": {"radius": 0.05, "light_paths": 4},
             **dict(render),
         },
         "materials": {**MATERIALS, **dict(materials)},
@@ -123,7 +123,7 @@ def box_furnace(things=(), camera=VIEW, albedo=0.5, **more):
 def integrating_sphere(lamp, albedo=0.5, camera=None, **more):
     """A sphere of radius 1 around `lamp`, shapes or emitters in its middle; the camera sees the wall alone."""
     wall = shape("sphere", "wall", center=[0, 0, 0], radius=1, reverse=True)
-    camera = camera or look([0.3, -0.3, 0.1], [0.9, -0.9, 0.3])
+    camera = camera or look([0.3, -0.3, 0.1], [0.9, -0.9, 0.3], 90)
     emitters = [each for each in lamp if each["type"] == "point"]
     shapes = [each for each in lamp if each["type"] != "point"]
     return _with_wall([wall, *shapes], camera, albedo, {"emitters": emitters, **more})

@@ -21,6 +21,15 @@ CASES = (
     ),
     Case("field-of-view-179", "The widest.", seen(179.0), Radiance(1)),
     Case("field-of-view-179.99", "Beyond reason.", seen(179.99), Radiance(1)),
+    Case(
+        "lens-wide",
+        "A lens nearly as wide as the room, focused on its own front.",
+        furnace(
+            camera=look([0, 0, 0], [0, 1, 0.1], type="thin-lens", aperture_radius=0.9, focus_distance=1e-3)
+        ),
+        Radiance(1),
+        quick=False,
+    ),
     Case("pixels-1x1", "One pixel.", seen(resolution=[1, 1]), Radiance(1), precision=0.03),
     Case(
         "pixels-1x10000",

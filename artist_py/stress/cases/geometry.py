@@ -16,7 +16,7 @@ def strewn(material, **more):
     return furnace(
         [shape("mesh", material, file="rubble.ply", smooth=False)],
         look([0.3, -0.8, 0.1], [-0.1, 0.6, 0.1]),
-        render={"max_path_length": 200, "merging": {"radius": 1e-3}},
+        render={"max_path_length": 200, "merging": {"radius": 1e-3, "light_paths": 4}},
         **more,
     )
 
@@ -63,14 +63,17 @@ CASES = (
     Case(
         "coincident-plates",
         "Two white plates in one place, one the other way round.",
-        furnace([TWICE_BLACK, {**TWICE_BLACK, "reverse": True}], render={"merging": {"radius": 0.005}}),
+        furnace(
+            [TWICE_BLACK, {**TWICE_BLACK, "reverse": True}],
+            render={"merging": {"radius": 0.005, "light_paths": 4}},
+        ),
         Radiance(1),
         left_out={"ppm": "photons beyond the plates' edges are missing", "bpm": "as ppm"},
     ),
     Case(
         "coincident-walls",
         "Every wall twice; one emits.",
-        box_furnace([DOUBLE], render={"merging": {"radius": 0.005}}),
+        box_furnace([DOUBLE], render={"merging": {"radius": 0.005, "light_paths": 4}}),
         Radiance(1),
         left_out={"ppm": "photons beyond the walls' edges are missing", "bpm": "as ppm"},
     ),
@@ -79,7 +82,7 @@ CASES = (
         "A white box of a millionth of its size across.",
         furnace(
             [shape("box", "white", min=[-0.4, 0.3, -0.4], max=[0.4, 0.3 + 1e-6, 0.4])],
-            render={"merging": {"radius": 0.005}},
+            render={"merging": {"radius": 0.005, "light_paths": 4}},
         ),
         Radiance(1),
         left_out={"ppm": "photons beyond the box's edges are missing", "bpm": "as ppm"},

@@ -56,6 +56,15 @@ CASES = (
         Radiance(1),
     ),
     Case(
+        "furnace-reference",
+        "The same, up to six edges, by brute force in plain Python.",
+        furnace(aside=None, film={"resolution": [3, 3]}, render={"max_path_length": 6}),
+        Radiance(1 - 0.5**6),
+        integrators=("reference",),
+        precision=0.03,
+        most=64,
+    ),
+    Case(
         "furnace-box",
         "The same with flat walls: edges, where rays leak.",
         box_furnace(render={"merging": {"radius": 0.005, "light_paths": 16}}),

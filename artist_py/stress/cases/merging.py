@@ -6,7 +6,7 @@ from artist_py.stress.scenes import furnace
 
 def merged(**settings):
     """A furnace with these settings of merging."""
-    return furnace(render={"merging": {"radius": 0.05, **settings}})
+    return furnace(render={"merging": {"radius": 0.05, "light_paths": 4, **settings}})
 
 
 CASES = (

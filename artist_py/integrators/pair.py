@@ -91,7 +91,9 @@ class Walk(NamedTuple):
 
 @function
 def light_paths_of(method, index):
-    """`(first, end)` of the light subpaths that belong to pixel `index` of the window."""
-    before = int(method.offset * method.light_paths)
-    first = int((index + method.offset) * method.light_paths) - before
-    return first, int((index + 1.0 + method.offset) * method.light_paths) - before
+    """`(first, end)` of the light subpaths that belong to pixel `index` of the window.
+
+    With an offset that is uniform in [0, 1) every pixel has `light_paths` of them on average.
+    """
+    first = int(index * method.light_paths + method.offset)
+    return first, int((index + 1) * method.light_paths + method.offset)

@@ -75,6 +75,17 @@ def test_every_light_subpath_belongs_to_one_pixel(light_paths, offset):
     assert abs(ranges[-1][1] - 1000 * light_paths) <= 1
 
 
+@pytest.mark.parametrize("light_paths", [0.01, 0.25, 1.0, 1.7, 3.5])
+def test_every_pixel_has_its_share_of_light_subpaths(light_paths):
+    """On average over the offsets of iterations, which fill [0, 1) evenly; or some pixels would never be connected."""
+    offsets = (np.arange(400) + 0.5) / 400
+    methods = [type("Method", (), {"light_paths": light_paths, "offset": offset}) for offset in offsets]
+    for index in range(7):
+        ranges = [light_paths_of(method, index) for method in methods]
+        assert np.mean([end - first for first, end in ranges]) == pytest.approx(light_paths, abs=1e-9)
+    assert np.mean([light_paths_of(method, 255)[1] for method in methods]) == pytest.approx(256 * light_paths)
+
+
 def test_radii_follow_knaus_and_zwicker():
     squared = 0.04
     for n in range(1, 50):

@@ -17,6 +17,7 @@ CASES = (
         "The narrowest view.",
         seen(0.01),
         Radiance(1),
+        precision=0.03,
         left_out={"lt": NARROW},
     ),
     Case("field-of-view-179", "The widest.", seen(179.0), Radiance(1)),

@@ -3,6 +3,7 @@
 from artist_py.stress.case import Case, Radiance
 from artist_py.stress.scenes import furnace, look
 
+FLAT = "at 89.99 degrees no photon falls into pixels so narrow"
 NARROW = "no photon ever falls into the eye's narrow view"
 
 
@@ -37,8 +38,15 @@ CASES = (
         "A column of ten thousand pixels, whose ends are seen at 89.99 degrees.",
         seen(resolution=[1, 10_000]),
         Radiance(1),
+        left_out={"lt": FLAT},
     ),
-    Case("pixels-10000x1", "A row of them.", seen(resolution=[10_000, 1]), Radiance(1)),
+    Case(
+        "pixels-10000x1",
+        "A row of them.",
+        seen(resolution=[10_000, 1]),
+        Radiance(1),
+        left_out={"lt": FLAT},
+    ),
     Case(
         "crop-1x1",
         "One pixel of many.",

@@ -57,8 +57,8 @@ OPTIONS = (
     ),
     click.Option(
         ["--wavelengths"],
-        type=click.Choice(["shared", "independent"]),
-        help="Whether paths share the wavelengths of their iteration, or draw their own.",
+        type=click.Choice(["shared", "independent", "rotate"]),
+        help="Whether paths share the wavelengths of their iteration, or draw their own (and merge, with rotate).",
     ),
     click.Option(["--hero-count"], type=click.Choice([1, 4, 8]), help="Wavelengths per path."),
     click.Option(["--spectral"], is_flag=True, help="Add spectral channels to the EXR, W m^-2 sr^-1 nm^-1."),

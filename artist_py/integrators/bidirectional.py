@@ -78,6 +78,14 @@ def trace_light_subpaths(setup, thread, index, wavelengths):
 
 
 @function
+def keep_offset(offsets, index, stream):
+    """Keep the number that places the wavelengths of pixel `index`, where merges need it."""
+    if offsets is None:
+        return
+    offsets[index] = random_pair(stream, WAVELENGTH)[0]
+
+
+@function
 def trace_pair(setup, thread, x, y, image):
     """Trace the pair of pixel (x, y), and store what the eye subpath brings without merges."""
     work, sensing = setup.work, setup.sensing
@@ -86,6 +94,7 @@ def trace_pair(setup, thread, x, y, image):
     wavelengths, weights = wavelengths_of_path(sensing, stream, WAVELENGTH)
     row, column = y - work.crop[2], x - work.crop[0]
     index = row * (work.crop[1] - work.crop[0]) + column
+    keep_offset(setup.stores.offsets, index, stream)
     light = trace_light_subpaths(setup, thread, index, wavelengths)
 
     u, v = random_pair(stream, FILM)

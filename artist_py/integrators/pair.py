@@ -66,6 +66,8 @@ class Stores(NamedTuple):
     paths: Table  # path_dtype, one row per light subpath
     resume: Table  # int64 (threads, 2): tile (or -1) and pixel in it at which records ran short
     techniques: TechniqueTables | None  # where contributions are also kept by technique
+    # float64: the number that places the wavelengths of each pixel's subpaths, where merges have to bring them in line
+    offsets: Table | None = None
 
 
 class Setup(NamedTuple):

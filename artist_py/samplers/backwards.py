@@ -20,11 +20,12 @@ from ..integrators.pair import Setup, Stores, path_dtype
 from ..integrators.path_tracing import RAYS, SHADOW_RAYS, STOP, Pass
 from ..transport.merge import Merging
 from ..transport.photon_grid import Grid, count_photons, photon_dtype, place_photons
+from ..transport.rotation import Rotation
 from ..transport.splats import splat_dtype
 from ..transport.vertices import CHUNK, NEXT_CHUNK, SHORTAGE, Pool, vertex_dtype
 from .memory import RECORDS_PER_PATH
 from .stochastic import StochasticSampler
-from .wavelengths import van_der_corput
+from .wavelengths import mean_acceptance, van_der_corput
 
 SMALLEST_RADIUS = 1e-7  # of the scene's radius: below, float32 positions decide what is near
 
@@ -68,12 +69,23 @@ class BackwardsSampler(StochasticSampler):
         self.lanes = render.hero_count
         self.counts = {"light_vertices": 0, "eye_vertices": 0, "merges": 0}
         self.phases = dict.fromkeys(("subpaths", "photon_grid", "merging", "light_image", "film"), 0.0)
+        self.offsets = self._offsets(compiled, render)
+        self.acceptance = 1.0
+        if self.offsets is not None:
+            tolerance = self.merging.wavelength_tolerance
+            self.acceptance = mean_acceptance(compiled.nodes, self.lanes, tolerance)
         self.paths = Table(np.zeros(math.ceil(self.n_pixels * self.light_paths) + 1, path_dtype))
         self.light = self._pool(vertex_dtype(self.lanes), self.subset.connect or self.subset.merge)
         self.eye = self._pool(vertex_dtype(self.lanes), self.subset.merge)
         self.splats = self._pool(splat_dtype(self.lanes, recorder is not None), self.subset.light_image)
 
     # --- stores
+
+    def _offsets(self, compiled, render):
+        """Room for what places each pixel's wavelengths, where merges ask for it; else `None`."""
+        if render.wavelengths != "rotate" or not self.subset.merge:
+            return None
+        return Table(np.zeros(self.n_pixels))
 
     def _pool(self, dtype, is_needed):
         """An empty pool with room for some records per path, or `None`."""
@@ -138,17 +150,19 @@ class BackwardsSampler(StochasticSampler):
             self.n_pixels,
             self.light_paths,
             van_der_corput(iteration),
-            math.pi * radius**2,
+            math.pi * radius**2 * self.acceptance,  # n_vm P_acc (2.7)
             compiled.graph.render.heuristic == "power",
         )
-        stores = Stores(self.light, self.eye, self.splats, self.paths, Table(resume), self.technique_tables)
+        stores = Stores(
+            self.light, self.eye, self.splats, self.paths, Table(resume), self.technique_tables, self.offsets
+        )
         camera, pixel_filter = compiled.camera, compiled.pixel_filter
         return Setup(scene, camera, pixel_filter, sensing, self.limits, work, method, stores), radius
 
     def _grid(self, n_photons, radius):
         """An empty grid for so many photons."""
         buckets = 1 << max((n_photons - 1).bit_length(), 4)
-        photons = np.empty(n_photons, photon_dtype(self.lanes))
+        photons = np.empty(n_photons, photon_dtype(self.lanes, self.offsets is not None))
         return Grid(Table(photons), Table(np.zeros(buckets + 1, np.int64)), 2.0 * radius)
 
     def _merging(self, setup, radius):
@@ -157,6 +171,7 @@ class BackwardsSampler(StochasticSampler):
             1.0 / (math.pi * radius**2 * setup.method.n_light_paths),
             self.merging.min_normal_cosine,
             True if self.merging.kernel == "epanechnikov" else None,
+            self.offsets and Rotation(self.merging.wavelength_tolerance, self.offsets),
         )
 
     def _merge(self, setup, radius):
@@ -170,7 +185,12 @@ class BackwardsSampler(StochasticSampler):
         counts = self.run([(count_photons, (grid, records, self.paths, *each)) for each in ranges])
         before = np.cumsum([0, *counts]).tolist()
         places = zip(ranges, before, strict=False)
-        self.run([(place_photons, (grid, records, self.paths, *each, start)) for each, start in places])
+        self.run(
+            [
+                (place_photons, (grid, records, self.paths, *each, start, self.offsets))
+                for each, start in places
+            ]
+        )
         sorted_at = time.monotonic()
         merging = self._merging(setup, radius)
         progress = np.zeros(2, np.int64)
@@ -201,7 +221,7 @@ class BackwardsSampler(StochasticSampler):
         if self.eye is not None:
             grid, merging = self._grid(0, radius), self._merging(setup, radius)
             calls.append((count_photons, (grid, self.light.records, self.paths, 0, 0)))
-            calls.append((place_photons, (grid, self.light.records, self.paths, 0, 0, 0)))
+            calls.append((place_photons, (grid, self.light.records, self.paths, 0, 0, 0, self.offsets)))
             calls.append((gather, (setup, grid, merging, Table(np.zeros(2, np.int64)), image)))
         return self.compile_calls(calls, observer)
 

@@ -72,9 +72,9 @@ def _bytes_per_light_path(render):
     method, lanes = METHODS.get(render.integrator), render.hero_count
     if method is None:
         return 0
-    size = 40
+    size, photon = 40, photon_dtype(lanes, render.wavelengths == "rotate")
     if method.merge:
-        size += RECORDS_PER_PATH * (vertex_dtype(lanes).itemsize + photon_dtype(lanes).itemsize + 16)
+        size += RECORDS_PER_PATH * (vertex_dtype(lanes).itemsize + photon.itemsize + 16)
     if method.light_image:
         size += RECORDS_PER_PATH * splat_dtype(lanes).itemsize
     return size

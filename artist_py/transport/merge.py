@@ -11,8 +11,8 @@ from ..jit import function
 from .mis import Partial, bracket, weight_of_merge
 from .photon_grid import bucket_of, cell_of, is_in_cell
 from .recording import VM, record
+from .rotation import Rotation, is_rejected, throughput_in_line
 from .subpath import is_on_side
-from .vertices import load_throughput
 
 
 class Merging(NamedTuple):
@@ -23,6 +23,7 @@ class Merging(NamedTuple):
     # Photons on surfaces that face elsewhere are not of this surface: they would leak through edges and thin walls.
     min_normal_cosine: float
     epanechnikov: bool | None  # K = 2 (1 - d^2 / r^2) / (pi r^2) instead of the constant kernel 1 / (pi r^2)
+    rotation: Rotation | None = None  # absent where all subpaths of an iteration share their wavelengths
 
 
 class Merged(NamedTuple):
@@ -33,10 +34,10 @@ class Merged(NamedTuple):
 
 
 @function
-def merge_at(scene, method, grid, merging, stored, survival, limits, tables, place):
+def merge_at(scene, method, grid, merging, stored, survival, limits, tables, place, window):
     """Sum over the photons within the radius of the stored eye vertex, each with its weight (1.14).
 
-    Each is also noted in the `TechniqueTables`, if there are any.
+    Each is also noted in the `TechniqueTables`, if there are any. `window` says which wavelengths are accepted.
     """
     wavelengths = place.wavelengths
     total, count = black(wavelengths), 0
@@ -53,8 +54,9 @@ def merge_at(scene, method, grid, merging, stored, survival, limits, tables, pla
             # A photon counts in its own cell only, since several of the eight may share a bucket.
             if distance_squared <= 1.0 and is_in_cell(photon.position, x, y, z, grid.cell):
                 length = photon.length + stored.length
-                if length <= limits.max_length:
-                    merged = _merge(scene, method, merging, photon, stored, survival, wavelengths)
+                throughput = throughput_in_line(window, photon, wavelengths)
+                if length <= limits.max_length and not is_rejected(window, throughput):
+                    merged = _merge(scene, method, merging, photon, throughput, stored, survival, wavelengths)
                     value = merged.value * _kernel(merging.epanechnikov, distance_squared)
                     total = total + value
                     count += 1
@@ -91,7 +93,7 @@ def _kernel(epanechnikov, distance_squared):
 
 
 @function
-def _merge(scene, method, merging, photon, stored, survival, wavelengths):
+def _merge(scene, method, merging, photon, throughput, stored, survival, wavelengths):
     vertex = stored.vertex
     normal = load_vec3(photon.normal)
     direction = load_vec3(photon.direction)
@@ -107,7 +109,7 @@ def _merge(scene, method, merging, photon, stored, survival, wavelengths):
         method.techniques.merge_once, scene, method, photon, stored, material, wi, pdf, survival, wavelengths
     )
     shading = _shading_factor(scene.needs.smooth_triangles, normal, direction, wi)
-    return MergedPhoton(load_throughput(photon, wavelengths) * f * (weight * shading), weight)
+    return MergedPhoton(throughput * f * (weight * shading), weight)
 
 
 @function

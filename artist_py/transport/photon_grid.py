@@ -12,13 +12,15 @@ import numpy as np
 from ..core.affine import load_vec3
 from ..core.table import Table
 from ..jit import function, kernel
+from .rotation import note_offset
 from .vertices import store3
 
 _U64 = np.uint64
 
 
-def photon_dtype(lanes):
-    """Layout of a photon: what a merge reads, and no more."""
+def photon_dtype(lanes, with_offset=False):
+    """Layout of a photon: what a merge reads, and no more; `with_offset` adds what tells its own wavelengths."""
+    own = [("offset", "f4"), ("pixel", "i4")] if with_offset else []
     return np.dtype(
         [
             ("position", "f4", 3),
@@ -28,6 +30,7 @@ def photon_dtype(lanes):
             ("length", "i4"),
             ("c", "f8"),
             ("e", "f8"),
+            *own,
         ],
         align=True,
     )
@@ -73,10 +76,11 @@ def count_photons(grid, records, paths, first, end):
 
 
 @kernel
-def place_photons(grid, records, paths, first, end, before):
+def place_photons(grid, records, paths, first, end, before, offsets):
     """Turn the counts of buckets [first, end) into starts, and copy their photons; `before` lie in earlier buckets.
 
     While photons are placed `starts[b + 1]` is where the next one of b goes; in the end it is where b + 1 starts.
+    `offsets` are those of a `Rotation`, where there is one.
     """
     buckets = grid.starts.shape[0] - 1
     position = before
@@ -93,6 +97,7 @@ def place_photons(grid, records, paths, first, end, before):
                 row = grid.starts[bucket + 1]
                 grid.starts[bucket + 1] = row + 1
                 _copy(record, grid.photons[row])
+                note_offset(offsets, path, grid.photons[row])
 
 
 @function

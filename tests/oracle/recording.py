@@ -246,8 +246,10 @@ class Recorder:
         )
         photon_grid._copy(light, photon[0])
         self.merge_weights = []
-        constants = Merging(1.0, 1.0, 0.0, None)
-        merge._merge(setup.scene, setup.method, constants, photon[0], stored, survival, self.wavelengths)
+        constants, flux = Merging(1.0, 1.0, 0.0, None), self.wavelengths
+        merge._merge(
+            setup.scene, setup.method, constants, photon[0], flux, stored, survival, self.wavelengths
+        )
         for weight in self.merge_weights:
             path = merged(*up_to(self.light, j), *up_to(self.eye, i))
             self._note(("vm", j), weight, path)

@@ -15,6 +15,7 @@ from ..jit import function
 from ..scene.tables import ABSORBER
 from ..transport.connect import Connected, connect_to_light, connect_vertices, no_connection
 from ..transport.mis import on_arrival, partial_after, weight_of_hit
+from ..transport.photon_density import counts_at
 from ..transport.recording import HIT, NEE, VC, record
 from ..transport.roulette import local_survival, survived
 from ..transport.subpath import go_straight, is_passed_through, scatter, vertex_at
@@ -55,12 +56,24 @@ def trace_eye_subpath(  # noqa: PLR0915 - one loop, a line or two per step of th
             break
         partial = arrived
         vertex = vertex_at(scene, surface, path, wavelengths)
+        counts = counts_at(method.density, method.counts, surface.position)
         survival = local_survival(scene, vertex, wavelengths)
         pair = FIRST_VERTEX + (length - 1) * PAIRS_PER_VERTEX
         u_select, u_lobe = random_pair(stream, pair + CHOICE)
         if not is_delta_bsdf(material):
             joined = connect(
-                setup, index, vertex, partial, survival, length, place, path, stream, pair + EMITTER, u_select
+                setup,
+                counts,
+                index,
+                vertex,
+                partial,
+                survival,
+                length,
+                place,
+                path,
+                stream,
+                pair + EMITTER,
+                u_select,
             )
             radiance = radiance + path.throughput * joined.value
             shadow_rays += joined.rays
@@ -73,7 +86,7 @@ def trace_eye_subpath(  # noqa: PLR0915 - one loop, a line or two per step of th
         begins_specular = begins_specular and (length > 1 or step.is_delta)
         if step.path.is_absorbed or is_done(method.techniques, is_specular, begins_specular):
             break
-        partial = partial_after(method.counts, partial, step, surface, survival, cos_in)
+        partial = partial_after(counts, partial, step, surface, survival, cos_in)
         path = survived(step.path, survival)
         length += 1
     return Walk(radiance, rays, shadow_rays)
@@ -86,26 +99,32 @@ def _record(setup, place, technique, length, eye_length, throughput, found):
 
 
 @function
-def connect(setup, index, vertex, partial, survival, length, place, path, stream, pair, u_select):
-    """Next-event estimation and connections at an eye vertex, as far as the method has them; `Connected`."""
+def connect(setup, counts, index, vertex, partial, survival, length, place, path, stream, pair, u_select):
+    """Next-event estimation and connections at an eye vertex, as far as the method has them; `Connected`.
+
+    `counts` are those for weights here.
+    """
     techniques, wavelengths = setup.method.techniques, place.wavelengths
     u, v = random_pair(stream, pair)
-    direct = _next_event(techniques.nee, setup, vertex, partial, survival, wavelengths, u, v, u_select)
+    direct = _next_event(
+        techniques.nee, setup, counts, vertex, partial, survival, wavelengths, u, v, u_select
+    )
     _record(setup, place, NEE, length + 1, length, path.throughput, direct)
-    others = _connect_all(techniques.connect, setup, index, vertex, partial, survival, length, place, path)
+    others = _connect_all(
+        techniques.connect, setup, counts, index, vertex, partial, survival, length, place, path
+    )
     return Connected(direct.value + others.value, direct.rays + others.rays, 1.0)
 
 
 @function
-def _next_event(needed, setup, vertex, partial, survival, wavelengths, u, v, u_select):
+def _next_event(needed, setup, counts, vertex, partial, survival, wavelengths, u, v, u_select):
     if needed is None:
         return no_connection(wavelengths)
-    counts = setup.method.counts
     return connect_to_light(setup.scene, counts, vertex, partial, survival, wavelengths, u, v, u_select)
 
 
 @function
-def _connect_all(needed, setup, index, vertex, partial, survival, length, place, path):
+def _connect_all(needed, setup, counts, index, vertex, partial, survival, length, place, path):
     """Connections to all vertices of the pixel's light subpaths."""
     wavelengths = place.wavelengths
     if needed is None:
@@ -123,8 +142,10 @@ def _connect_all(needed, setup, index, vertex, partial, survival, length, place,
         if stored.length + length + 1 > limits.max_length:
             continue
         light_survival = local_survival(scene, stored.vertex, wavelengths)
+        method = setup.method
+        light_counts = counts_at(method.density, method.counts, stored.vertex.surface.position)
         joined = connect_vertices(
-            scene, setup.method.counts, vertex, partial, survival, stored, light_survival, wavelengths
+            scene, counts, vertex, partial, survival, stored, light_survival, wavelengths, light_counts
         )
         _record(setup, place, VC, stored.length + length + 1, length, path.throughput, joined)
         total = total + joined.value

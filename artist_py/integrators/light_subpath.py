@@ -15,6 +15,7 @@ from ..jit import function
 from ..scene.tables import ABSORBER
 from ..transport.connect import connect_to_camera
 from ..transport.mis import Partial, on_arrival, partial_after
+from ..transport.photon_density import counts_at
 from ..transport.roulette import local_survival, survived
 from ..transport.splats import choose_pixel, store_splat
 from ..transport.subpath import Path, go_straight, is_passed_through, scatter, vertex_at
@@ -93,12 +94,13 @@ def _walk(  # noqa: C901 - one loop, a line or two per step of the walk
         vertex = vertex_at(scene, surface, path, wavelengths)
         if not vertex.is_sampled_back:  # no eye walk could go back there
             break
+        here = counts_at(setup.method.density, counts, surface.position)
         survival = local_survival(scene, vertex, wavelengths)
         pair = FIRST_VERTEX + (length - 1) * PAIRS_PER_VERTEX
         if not is_delta_bsdf(material):
             _store(setup.stores.light, setup.stores.paths, thread, index, surface, path, partial, length)
             shadow_rays += splat(
-                setup, thread, index, vertex, partial, survival, path, wavelengths, stream, length
+                setup, here, thread, index, vertex, partial, survival, path, wavelengths, stream, length
             )
         if length + 1 >= limits.max_length or random_number(stream, ROULETTE + length) >= survival:
             break
@@ -106,7 +108,7 @@ def _walk(  # noqa: C901 - one loop, a line or two per step of the walk
         step = scatter(scene, vertex, path, wavelengths, stream, pair + BSDF, u_lobe, True)
         if step.path.is_absorbed:
             break
-        partial = partial_after(counts, partial, step, surface, survival, cos_in)
+        partial = partial_after(here, partial, step, surface, survival, cos_in)
         path = survived(step.path, survival)
         length += 1
     return Walk(black(wavelengths), rays, shadow_rays)
@@ -151,16 +153,21 @@ def _store(pool, paths, thread, index, surface, path, partial, length):
 
 
 @function
-def splat(setup, thread, index, vertex, partial, survival, path, wavelengths, stream, length):
-    """Connect a light vertex to the camera, where the method has a light image; returns the number of shadow rays."""
+def splat(setup, counts, thread, index, vertex, partial, survival, path, wavelengths, stream, length):
+    """Connect a light vertex to the camera, where the method has a light image; returns the number of shadow rays.
+
+    `counts` are those for weights here.
+    """
     return _splat(
-        setup.method.techniques.light_image, setup, thread, index, vertex, partial, survival, path, wavelengths,
+        setup.method.techniques.light_image, setup, counts, thread, index, vertex, partial, survival, path, wavelengths,
         stream, length,
     )  # fmt: skip
 
 
 @function
-def _splat(needed, setup, thread, index, vertex, partial, survival, path, wavelengths, stream, length):
+def _splat(
+    needed, setup, counts, thread, index, vertex, partial, survival, path, wavelengths, stream, length
+):
     if needed is None:
         return 0
     stores, pair = setup.stores, FIRST_VERTEX + (length - 1) * PAIRS_PER_VERTEX
@@ -172,9 +179,7 @@ def _splat(needed, setup, thread, index, vertex, partial, survival, path, wavele
     pixel = choose_pixel(setup.pixel_filter, sensor.film_x, sensor.film_y, number, setup.work.crop)
     if pixel.index < 0:
         return 0
-    connected = connect_to_camera(
-        setup.scene, setup.method.counts, vertex, partial, survival, sensor, wavelengths
-    )
+    connected = connect_to_camera(setup.scene, counts, vertex, partial, survival, sensor, wavelengths)
     value = path.throughput * connected.value * (pixel.weight / setup.method.n_light_paths)
     store_splat(
         stores.techniques, stores.splats, thread, stores.paths[index], pixel.index, value, length + 1,

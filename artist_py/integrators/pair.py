@@ -9,6 +9,7 @@ from ..core.vector import Spectrum
 from ..jit import function
 from ..scene.tables import Camera, Filter, Scene
 from ..transport.mis import Counts
+from ..transport.photon_density import PhotonDensity
 from ..transport.recording import TechniqueTables
 from ..transport.roulette import Limits
 from ..transport.sensing import Sensing
@@ -55,6 +56,7 @@ class Method(NamedTuple):
     light_paths: float  # per pixel
     offset: float  # in [0, 1): which pixels get one more where `light_paths` is not whole
     hits_everything: bool  # hitting an emitter is a technique like the others; else only where no other can
+    density: PhotonDensity | None = None  # absent where weights take merges for independent samples
 
 
 class Stores(NamedTuple):

@@ -24,6 +24,7 @@ from ..transport.rotation import Rotation
 from ..transport.splats import splat_dtype
 from ..transport.vertices import CHUNK, NEXT_CHUNK, SHORTAGE, Pool, vertex_dtype
 from .memory import RECORDS_PER_PATH
+from .pilot import Pilot
 from .stochastic import StochasticSampler
 from .wavelengths import mean_acceptance, van_der_corput
 
@@ -78,6 +79,10 @@ class BackwardsSampler(StochasticSampler):
         self.light = self._pool(vertex_dtype(self.lanes), self.subset.connect or self.subset.merge)
         self.eye = self._pool(vertex_dtype(self.lanes), self.subset.merge)
         self.splats = self._pool(splat_dtype(self.lanes, recorder is not None), self.subset.light_image)
+        is_weighed = self.subset.merge and not self.subset.merge_once
+        self.pilot = None
+        if is_weighed and self.merging.correlation == "vcm+":
+            self.pilot = Pilot(self, merge_radius(compiled, 0))
 
     # --- stores
 
@@ -119,6 +124,7 @@ class BackwardsSampler(StochasticSampler):
 
     def iterate(self, iteration, stop=None):
         """Trace the subpaths of an iteration, merge, and add to the film; `False` if `stop` was set meanwhile."""
+        self._count_pilot_photons()
         begun = time.monotonic()
         for pool in (self.light, self.eye, self.splats):
             _empty(pool)
@@ -153,11 +159,22 @@ class BackwardsSampler(StochasticSampler):
             math.pi * radius**2 * self.acceptance,  # n_vm P_acc (2.7)
             compiled.graph.render.heuristic == "power",
         )
+        if self.pilot is not None:
+            method = method._replace(density=self.pilot.density)
         stores = Stores(
             self.light, self.eye, self.splats, self.paths, Table(resume), self.technique_tables, self.offsets
         )
         camera, pixel_filter = compiled.camera, compiled.pixel_filter
         return Setup(scene, camera, pixel_filter, sensing, self.limits, work, method, stores), radius
+
+    def _count_pilot_photons(self):
+        """Have the photon density that weights ask for, before the first iteration."""
+        if self.pilot is None or self.pilot.is_done:
+            return
+        begun = time.monotonic()
+        self.run(self.pilot.jobs(self))
+        self.pilot.is_done = True
+        self.phases["pilot"] = time.monotonic() - begun
 
     def _grid(self, n_photons, radius):
         """An empty grid for so many photons."""
@@ -223,6 +240,8 @@ class BackwardsSampler(StochasticSampler):
             calls.append((count_photons, (grid, self.light.records, self.paths, 0, 0)))
             calls.append((place_photons, (grid, self.light.records, self.paths, 0, 0, 0, self.offsets)))
             calls.append((gather, (setup, grid, merging, Table(np.zeros(2, np.int64)), image)))
+        if self.pilot is not None:
+            calls.append(self.pilot.jobs(self)[0])
         return self.compile_calls(calls, observer)
 
 

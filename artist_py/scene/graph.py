@@ -132,6 +132,9 @@ class Merging(Node):
         Number(at_least=0, at_most=1), 0.4
     )  # between the surfaces of photon and vertex
     light_paths: float = key(Number(at_least=0.01, at_most=64), 1.0)  # per pixel
+    correlation: str = key(
+        Choice(("none", "vcm+")), "none"
+    )  # whether weights know that merges at one place share their photons
     wavelength_tolerance: float = key(Number(above=0), 5.0)  # nm, with wavelengths = "rotate"
 
     def __post_init__(self):
@@ -200,6 +203,9 @@ class Render(Node):
     def problems(self):
         if problem := _wavelength_problem(self.integrator, self.wavelengths):
             yield "wavelengths", problem
+        if self.integrator == "reference" and self.merging.correlation != "none":
+            message = f'expected correlation = "none" with reference, found {show(self.merging.correlation)}'
+            yield "merging", message
         if self.integrator != "pt" and self.max_path_length > LONGEST_STORED:
             message = (
                 f"expected at most {LONGEST_STORED} with {self.integrator}, found {self.max_path_length}"

@@ -117,8 +117,13 @@ def _to_light(emitters, scene, counts, vertex, partial, survival, wavelengths, u
 
 
 @function
-def connect_vertices(scene, counts, eye, eye_partial, eye_survival, light, light_survival, wavelengths):
-    """An eye vertex joined with a stored light vertex, with its weight (1.13); radiance per eye throughput."""
+def connect_vertices(
+    scene, counts, eye, eye_partial, eye_survival, light, light_survival, wavelengths, light_counts
+):
+    """An eye vertex joined with a stored light vertex, with its weight (1.13); radiance per eye throughput.
+
+    `counts` are those for weights at the eye vertex, `light_counts` at the light vertex.
+    """
     nothing = no_connection(wavelengths)
     towards = light.vertex.surface.position - eye.surface.position
     distance_squared = dot(towards, towards)
@@ -136,7 +141,7 @@ def connect_vertices(scene, counts, eye, eye_partial, eye_survival, light, light
     weight = weight_of_connection(
         counts,
         here.pdf_fwd * there.cos_theta / distance_squared,
-        bracket(counts, light.partial, there.pdf_rev),
+        bracket(light_counts, light.partial, there.pdf_rev),
         there.pdf_fwd * here.cos_theta / distance_squared,
         bracket(counts, eye_partial, here.pdf_rev),
     )

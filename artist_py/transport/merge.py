@@ -9,6 +9,7 @@ from ..core.spectra import black
 from ..core.vector import Spectrum, dot
 from ..jit import function
 from .mis import Partial, bracket, weight_of_merge
+from .photon_density import counts_at
 from .photon_grid import bucket_of, cell_of, is_in_cell
 from .recording import VM, record
 from .rotation import Rotation, is_rejected, throughput_in_line
@@ -44,6 +45,7 @@ def merge_at(scene, method, grid, merging, stored, survival, limits, tables, pla
     p = stored.vertex.surface.position
     i, j, k = _lower_cell(p.x, grid.cell), _lower_cell(p.y, grid.cell), _lower_cell(p.z, grid.cell)
     buckets = grid.starts.shape[0] - 1
+    counts = counts_at(method.density, method.counts, p)
     scale = 1.0 / (merging.radius * merging.radius)
     for corner in range(8):
         x, y, z = i + (corner & 1), j + ((corner >> 1) & 1), k + (corner >> 2)
@@ -56,7 +58,9 @@ def merge_at(scene, method, grid, merging, stored, survival, limits, tables, pla
                 length = photon.length + stored.length
                 throughput = throughput_in_line(window, photon, wavelengths)
                 if length <= limits.max_length and not is_rejected(window, throughput):
-                    merged = _merge(scene, method, merging, photon, throughput, stored, survival, wavelengths)
+                    merged = _merge(
+                        scene, method, counts, merging, photon, throughput, stored, survival, wavelengths
+                    )
                     value = merged.value * _kernel(merging.epanechnikov, distance_squared)
                     total = total + value
                     count += 1
@@ -93,7 +97,7 @@ def _kernel(epanechnikov, distance_squared):
 
 
 @function
-def _merge(scene, method, merging, photon, throughput, stored, survival, wavelengths):
+def _merge(scene, method, counts, merging, photon, throughput, stored, survival, wavelengths):
     vertex = stored.vertex
     normal = load_vec3(photon.normal)
     direction = load_vec3(photon.direction)
@@ -106,14 +110,14 @@ def _merge(scene, method, merging, photon, throughput, stored, survival, wavelen
         return MergedPhoton(black(wavelengths), 0.0)
     f = evaluate_bsdf(scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, vertex.wo, wi)
     weight = _weight(
-        method.techniques.merge_once, scene, method, photon, stored, material, wi, pdf, survival, wavelengths
+        method.techniques.merge_once, scene, counts, photon, stored, material, wi, pdf, survival, wavelengths
     )
     shading = _shading_factor(scene.needs.smooth_triangles, normal, direction, wi)
     return MergedPhoton(throughput * f * (weight * shading), weight)
 
 
 @function
-def _weight(merge_once, scene, method, photon, stored, material, wi, pdf, survival, wavelengths):
+def _weight(merge_once, scene, counts, photon, stored, material, wi, pdf, survival, wavelengths):
     """(1.14), or 1 where merging is the only technique."""
     if merge_once is not None:
         return 1.0
@@ -121,9 +125,9 @@ def _weight(merge_once, scene, method, photon, stored, material, wi, pdf, surviv
     pdf_rev = pdf_bsdf(scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, wi, vertex.wo)
     if not vertex.is_sampled_back:
         pdf_rev = 0.0
-    light = bracket(method.counts, Partial(photon.c, photon.e), pdf * survival)
-    eye = bracket(method.counts, stored.partial, pdf_rev * survival)
-    return weight_of_merge(method.counts, light, eye)
+    light = bracket(counts, Partial(photon.c, photon.e), pdf * survival)
+    eye = bracket(counts, stored.partial, pdf_rev * survival)
+    return weight_of_merge(counts, light, eye)
 
 
 @function

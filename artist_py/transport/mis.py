@@ -36,6 +36,12 @@ class Counts(NamedTuple):
     power: bool | None  # the power heuristic instead of the balance heuristic
 
 
+@function
+def with_vm_area(counts, area):
+    """The counts with another `vm_area`, their fifth field: a may be local to a vertex (theory 1.4)."""
+    return Counts(*(counts[:4] + (area,) + counts[5:]))  # noqa: RUF005 - numba wants literals and sums of tuples
+
+
 class Partial(NamedTuple):
     """C and E of a subpath at its last vertex."""
 

@@ -16,7 +16,7 @@ SIZE, BLOCK, ITERATIONS = 24, 6, 256
 PRECISION = 0.01  # standard error of the image's mean that each image has to reach, relative
 METHODS = ("lt", "bpt", "ppm", "bpm", "vcm")
 FALSE_ALARM = 1e-3
-COMPARISONS = (3 * len(METHODS) + 1) * (SIZE // BLOCK) ** 2
+COMPARISONS = (3 * len(METHODS) + 2) * (SIZE // BLOCK) ** 2
 
 
 ROOM = [
@@ -65,7 +65,7 @@ SCENES = {
 }
 
 
-def image(name, integrator, **more):
+def compiled_scene(name, integrator, **more):
     film = {"resolution": [SIZE, SIZE], "filter": "mitchell" if name == "diffuse" else "blackman-harris"}
     wavelengths = "shared" if integrator in ("ppm", "bpm", "vcm") else "independent"
     # Seeds of their own: equal ones would give equal eye subpaths.
@@ -74,7 +74,11 @@ def image(name, integrator, **more):
     # Merging alone needs more photons and a larger radius to be precise; their bias is still far below the error.
     merging = {"radius": 0.01, "light_paths": 8} if integrator in ("ppm", "bpm") else {"radius": 0.002}
     render |= {"wavelength_range": [380, 780], "merging": merging} | more
-    compiled = scene(materials=MATERIALS, film=film, render=render, **SCENES[name])
+    return scene(materials=MATERIALS, film=film, render=render, **SCENES[name])
+
+
+def image(name, integrator, **more):
+    compiled = compiled_scene(name, integrator, **more)
     result = artist_py.render(compiled, iterations=ITERATIONS, threads=2, aovs=("variance",)).film
     assert result.rejected_count == 0
     return result
@@ -110,6 +114,15 @@ def test_rotated_wavelengths_agree(path_traced):
     merging = {"radius": 0.002, "wavelength_tolerance": 10}
     found = image("specular", "vcm", wavelengths="rotate", merging=merging, seed=50)
     assert_agree(path_traced("specular"), found, PRECISION)
+
+
+def test_crowded_merges_agree(path_traced):
+    """With weights that know the density of photons; and images do not depend on threads."""
+    merging = {"radius": 0.002, "correlation": "vcm+"}
+    assert_agree(path_traced("specular"), image("specular", "vcm", merging=merging, seed=51), PRECISION)
+    compiled = compiled_scene("specular", "vcm", merging=merging | {"radius": 0.02})
+    one, three = (artist_py.render(compiled, iterations=2, threads=threads).film.rgb for threads in (1, 3))
+    assert np.array_equal(one, three)
 
 
 def assert_agree(expected, found, precision):

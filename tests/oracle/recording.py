@@ -33,6 +33,7 @@ from artist_py.integrators.reference_paths import (
 from artist_py.transport import connect, merge, photon_grid
 from artist_py.transport.merge import Merging
 from artist_py.transport.mis import Partial
+from artist_py.transport.photon_density import counts_at
 from artist_py.transport.recording import Place
 from artist_py.transport.roulette import Limits, local_survival
 from artist_py.transport.sensing import Sensing
@@ -246,9 +247,10 @@ class Recorder:
         )
         photon_grid._copy(light, photon[0])
         self.merge_weights = []
+        counts = counts_at(setup.method.density, setup.method.counts, stored.vertex.surface.position)
         constants, flux = Merging(1.0, 1.0, 0.0, None), self.wavelengths
         merge._merge(
-            setup.scene, setup.method, constants, photon[0], flux, stored, survival, self.wavelengths
+            setup.scene, setup.method, counts, constants, photon[0], flux, stored, survival, self.wavelengths
         )
         for weight in self.merge_weights:
             path = merged(*up_to(self.light, j), *up_to(self.eye, i))

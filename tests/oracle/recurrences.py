@@ -9,6 +9,7 @@ from artist_py.emitters.emission import pdf_emission_of_hit
 from artist_py.integrators.reference_densities import emitter_of, ior_on_side, pdf_direction
 from artist_py.transport import mis
 from artist_py.transport.mis import Partial
+from artist_py.transport.photon_density import counts_at
 
 
 class Case(NamedTuple):
@@ -22,6 +23,11 @@ class Case(NamedTuple):
     def length(self):
         """Edges of the path."""
         return len(self.path.edges)
+
+    def counts(self, i):
+        """`Counts` for weights at vertex i."""
+        method = self.setup.method
+        return counts_at(method.density, method.counts, self.path.nodes[i].surface.position)
 
     def density(self, i, forwards):
         """Density, sr^-1, of leaving vertex i towards the lens (`forwards`) or towards the light."""
@@ -60,7 +66,7 @@ def light_partials(case):
             partial = mis.after_delta(found[i], edges[i - 1].cos_end, case.eta(i))
         else:
             densities = case.density(i, True), case.density(i, False)
-            partial = mis.after_scatter(counts, found[i], *densities, edges[i].cos_start)
+            partial = mis.after_scatter(case.counts(i), found[i], *densities, edges[i].cos_start)
         found.append(mis.on_arrival(partial, edges[i].distance_squared, edges[i].cos_end))
     return found
 
@@ -77,7 +83,7 @@ def eye_partials(case):
             partial = mis.after_delta(found[i], edges[i].cos_start, 1.0 / case.eta(i))
         else:
             densities = case.density(i, False), case.density(i, True)
-            partial = mis.after_scatter(counts, found[i], *densities, edges[i - 1].cos_end)
+            partial = mis.after_scatter(case.counts(i), found[i], *densities, edges[i - 1].cos_end)
         found[i - 1] = mis.on_arrival(partial, edges[i - 1].distance_squared, edges[i - 1].cos_start)
     return found
 
@@ -94,17 +100,17 @@ def all_weights(case):
             weights["vc", s] = mis.weight_of_connection(
                 counts,
                 case.density(s, False) * edge.cos_start / edge.distance_squared,
-                mis.bracket(counts, light[s - 1], case.density(s - 1, False)),
+                mis.bracket(case.counts(s - 1), light[s - 1], case.density(s - 1, False)),
                 case.density(s - 1, True) * edge.cos_end / edge.distance_squared,
-                mis.bracket(counts, eye[s], case.density(s, True)),
+                mis.bracket(case.counts(s), eye[s], case.density(s, True)),
             )
     for m in range(1, k):
         if counts.vm_area > 0.0 and can_join[m]:
             brackets = (
-                mis.bracket(counts, light[m], case.density(m, False)),
-                mis.bracket(counts, eye[m], case.density(m, True)),
+                mis.bracket(case.counts(m), light[m], case.density(m, False)),
+                mis.bracket(case.counts(m), eye[m], case.density(m, True)),
             )
-            weights["vm", m] = mis.weight_of_merge(counts, *brackets)
+            weights["vm", m] = mis.weight_of_merge(case.counts(m), *brackets)
     return weights
 
 
@@ -122,7 +128,7 @@ def _weights_of_ends(case, light, eye, can_join):
             counts,
             case.density(1, False) / next_event,
             ratio,
-            mis.bracket(counts, eye[1], case.density(1, True)),
+            mis.bracket(case.counts(1), eye[1], case.density(1, True)),
         )
     if counts.lt > 0.0 and can_join[k - 1]:
         last = edges[k - 1]
@@ -130,6 +136,6 @@ def _weights_of_ends(case, light, eye, can_join):
         weights["lt", k] = mis.weight_of_light_image(
             counts,
             density * last.cos_start / last.distance_squared,
-            mis.bracket(counts, light[k - 1], case.density(k - 1, False)),
+            mis.bracket(case.counts(k - 1), light[k - 1], case.density(k - 1, False)),
         )
     return weights

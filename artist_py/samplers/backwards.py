@@ -22,8 +22,8 @@ from ..transport.merge import Merging
 from ..transport.photon_grid import Grid, count_photons, photon_dtype, place_photons
 from ..transport.rotation import Rotation
 from ..transport.splats import splat_dtype
-from ..transport.vertices import CHUNK, NEXT_CHUNK, SHORTAGE, Pool, vertex_dtype
-from .memory import RECORDS_PER_PATH
+from ..transport.vertices import CHUNK, NEXT_CHUNK, SHORTAGE, Pool
+from .memory import RECORDS_PER_PATH, stored_vertex_dtype
 from .pilot import Pilot
 from .stochastic import StochasticSampler
 from .wavelengths import mean_acceptance, van_der_corput
@@ -76,8 +76,9 @@ class BackwardsSampler(StochasticSampler):
             tolerance = self.merging.wavelength_tolerance
             self.acceptance = mean_acceptance(compiled.nodes, self.lanes, tolerance)
         self.paths = Table(np.zeros(math.ceil(self.n_pixels * self.light_paths) + 1, path_dtype))
-        self.light = self._pool(vertex_dtype(self.lanes), self.subset.connect or self.subset.merge)
-        self.eye = self._pool(vertex_dtype(self.lanes), self.subset.merge)
+        vertex = stored_vertex_dtype(compiled)
+        self.light = self._pool(vertex, self.subset.connect or self.subset.merge)
+        self.eye = self._pool(vertex, self.subset.merge)
         self.splats = self._pool(splat_dtype(self.lanes, recorder is not None), self.subset.light_image)
         is_weighed = self.subset.merge and not self.subset.merge_once
         self.pilot = None
@@ -102,7 +103,9 @@ class BackwardsSampler(StochasticSampler):
     def _pool_of(self, records):
         ends = Table(np.zeros((self.threads, 2), np.int64))
         used = Table(np.zeros(len(records) // CHUNK, np.int32))
-        return Pool(Table(records), Table(np.zeros(2, np.int64)), ends, used)
+        needs = self.compiled.scene.needs
+        state = Table(np.zeros(2, np.int64))
+        return Pool(Table(records), state, ends, used, needs.smooth_triangles, needs.textures)
 
     def _enlarge(self):
         """Give the pools that ran short half as much again; `False` if none did."""
@@ -180,7 +183,7 @@ class BackwardsSampler(StochasticSampler):
         """An empty grid for so many photons."""
         buckets = 1 << max((n_photons - 1).bit_length(), 4)
         photons = np.empty(n_photons, photon_dtype(self.lanes, self.offsets is not None))
-        return Grid(Table(photons), Table(np.zeros(buckets + 1, np.int64)), 2.0 * radius)
+        return Grid(Table(photons), Table(np.zeros(buckets + 1, np.int32)), 2.0 * radius)
 
     def _merging(self, setup, radius):
         return Merging(

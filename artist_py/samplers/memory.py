@@ -16,6 +16,13 @@ BYTES_PER_FACE = 110  # of Embree's acceleration structure, about
 FEWEST_LIGHT_PATHS = 0.05  # per pixel
 
 
+def stored_vertex_dtype(compiled):
+    """Layout of the vertices that a render stores."""
+    needs = compiled.scene.needs
+    lanes = compiled.graph.render.hero_count
+    return vertex_dtype(lanes, needs.smooth_triangles is not None, needs.textures is not None)
+
+
 def crop_of(graph):
     """Pixels to render, (x0, x1, y0, y1), half open."""
     width, height = graph.film.resolution
@@ -51,8 +58,8 @@ def memory_estimate(compiled, settings):
         "acceleration structure": BYTES_PER_FACE * faces,
         "spectra": compiled.spectra.nbytes,
         "textures": sum(image.nbytes for image in compiled.texture_images),
-        "eye vertices": pixels * _bytes_per_eye_path(compiled.graph.render),
-        "light vertices": round(pixels * light_paths * _bytes_per_light_path(compiled.graph.render)),
+        "eye vertices": pixels * _bytes_per_eye_path(compiled),
+        "light vertices": round(pixels * light_paths * _bytes_per_light_path(compiled)),
     }
 
 
@@ -62,19 +69,20 @@ def _bytes_of_techniques(render, settings):
     return 3 * BYTES_PER_VALUE * len(techniques_of_render(render, settings.technique_length))
 
 
-def _bytes_per_eye_path(render):
-    method = METHODS.get(render.integrator)
-    return RECORDS_PER_PATH * vertex_dtype(render.hero_count).itemsize if method and method.merge else 0
+def _bytes_per_eye_path(compiled):
+    method = METHODS.get(compiled.graph.render.integrator)
+    return RECORDS_PER_PATH * stored_vertex_dtype(compiled).itemsize if method and method.merge else 0
 
 
-def _bytes_per_light_path(render):
+def _bytes_per_light_path(compiled):
     """Stored vertices, their copies in the photon grid, and splats."""
+    render = compiled.graph.render
     method, lanes = METHODS.get(render.integrator), render.hero_count
     if method is None:
         return 0
     size, photon = 40, photon_dtype(lanes, render.wavelengths == "rotate")
     if method.merge:
-        size += RECORDS_PER_PATH * (vertex_dtype(lanes).itemsize + photon.itemsize + 16)
+        size += RECORDS_PER_PATH * (stored_vertex_dtype(compiled).itemsize + photon.itemsize + 8)
     if method.light_image:
         size += RECORDS_PER_PATH * splat_dtype(lanes).itemsize
     return size

@@ -11,7 +11,8 @@ from ..integrators.pair import Setup, Stores, Techniques, path_dtype
 from ..integrators.path_tracing import Pass
 from ..integrators.pilot import count_pilot_photons
 from ..transport.photon_density import PhotonDensity, scale_of
-from ..transport.vertices import CHUNK, Pool, vertex_dtype
+from ..transport.vertices import CHUNK, Pool
+from .memory import stored_vertex_dtype
 
 PATHS = 1 << 17  # light subpaths
 BUCKETS = 1 << 20
@@ -49,10 +50,12 @@ class Pilot:
         work = Pass(sampler.seed, 0, 0, sampler.crop, sampler.width, Table(np.zeros(4, np.int64)))
         ends = CHUNK * np.stack([np.arange(threads), np.arange(1, threads + 1)], axis=1)
         pool = Pool(
-            Table(np.empty(threads * CHUNK, vertex_dtype(sampler.lanes))),
+            Table(np.empty(threads * CHUNK, stored_vertex_dtype(compiled))),
             Table(np.zeros(2, np.int64)),
             Table(ends),
             Table(np.zeros(threads, np.int32)),
+            compiled.scene.needs.smooth_triangles,
+            compiled.scene.needs.textures,
         )
         paths, resume = Table(np.zeros(threads, path_dtype)), Table(np.zeros((threads, 2), np.int64))
         stores = Stores(pool, None, None, paths, resume, None)

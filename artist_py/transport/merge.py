@@ -10,7 +10,7 @@ from ..core.vector import Spectrum, dot
 from ..jit import function
 from .mis import Partial, bracket, weight_of_merge
 from .photon_density import counts_at
-from .photon_grid import bucket_of, cell_of, is_in_cell
+from .photon_grid import bucket_of, cell_of, is_in_pair
 from .recording import VM, record
 from .rotation import Rotation, is_rejected, throughput_in_line
 from .subpath import is_on_side
@@ -48,13 +48,16 @@ def merge_at(scene, method, grid, merging, stored, survival, limits, tables, pla
     counts = counts_at(method.density, method.counts, p)
     scale = 1.0 / (merging.radius * merging.radius)
     for corner in range(8):
-        x, y, z = i + (corner & 1), j + ((corner >> 1) & 1), k + (corner >> 2)
-        bucket = bucket_of(x, y, z, buckets)
-        for row in range(grid.starts[bucket], grid.starts[bucket + 1]):
+        x, y, z = corner & 1, j + ((corner >> 1) & 1), k + (corner >> 2)
+        bucket = bucket_of(i + x, y, z, buckets)
+        # The second of a row is gone over with the first, whose bucket it follows, but where buckets begin again.
+        if x == 1 and bucket > 0:
+            continue
+        for row in range(grid.starts[bucket], grid.starts[min(bucket + 2 - x, buckets)]):
             photon = grid.photons[row]
             distance_squared = _distance_squared(photon, p) * scale
-            # A photon counts in its own cell only, since several of the eight may share a bucket.
-            if distance_squared <= 1.0 and is_in_cell(photon.position, x, y, z, grid.cell):
+            # A photon counts in its own row only, since several of the four may share buckets.
+            if distance_squared <= 1.0 and is_in_pair(photon.position, i, y, z, grid.cell):
                 length = photon.length + stored.length
                 throughput = throughput_in_line(window, photon, wavelengths)
                 if length <= limits.max_length and not is_rejected(window, throughput):

@@ -28,8 +28,8 @@ def photon_dtype(lanes, with_offset=False):
             ("normal", "f4", 3),
             ("throughput", "f4", lanes),
             ("length", "i4"),
-            ("c", "f8"),
-            ("e", "f8"),
+            ("c", "f4"),
+            ("e", "f4"),
             *own,
         ],
         align=True,
@@ -40,7 +40,7 @@ class Grid(NamedTuple):
     """Photons by bucket: those of bucket b are rows [starts[b], starts[b + 1])."""
 
     photons: Table  # photon_dtype
-    starts: Table  # int64 (buckets + 1,), buckets a power of two
+    starts: Table  # int32 (buckets + 1,), buckets a power of two
     cell: float  # edge of a cell, render-space units
 
 
@@ -52,10 +52,13 @@ def cell_of(x, cell):
 
 @function
 def bucket_of(i, j, k, buckets):
-    """Bucket of a cell (Teschner et al. 2003)."""
-    mixed = (_U64(i) * _U64(73856093)) ^ (_U64(j) * _U64(19349663)) ^ (_U64(k) * _U64(83492791))
+    """Bucket of a cell: a hash of its row (Teschner et al. 2003), and from there one after the other along x.
+
+    So two neighbours in a row are one range of photons, and one place in memory instead of two.
+    """
+    mixed = (_U64(j) * _U64(19349663)) ^ (_U64(k) * _U64(83492791))
     mixed = (mixed ^ (mixed >> _U64(15))) * _U64(0x9E3779B97F4A7C15)
-    return int((mixed >> _U64(20)) & _U64(buckets - 1))
+    return int(((mixed >> _U64(20)) + _U64(i)) & _U64(buckets - 1))
 
 
 @kernel
@@ -107,10 +110,10 @@ def _bucket_of_vertex(record, cell, buckets):
 
 
 @function
-def is_in_cell(position, i, j, k, cell):
-    """Whether a photon's position (float32) lies in cell (i, j, k), by the arithmetic that has sorted it."""
+def is_in_pair(position, i, j, k, cell):
+    """Whether a photon's position (float32) lies in cell (i, j, k) or (i + 1, j, k), by the arithmetic that sorts."""
     return (
-        cell_of(np.float32(position[0]), cell) == i
+        0 <= cell_of(np.float32(position[0]), cell) - i <= 1
         and cell_of(np.float32(position[1]), cell) == j
         and cell_of(np.float32(position[2]), cell) == k
     )

@@ -165,6 +165,7 @@ def _render(graph, budget, outputs, options):
         max_memory_bytes=options["max_memory"],
         techniques=options["techniques"],
         technique_length=options["technique_length"] or LONGEST,
+        compile_apart=True,
     )
     record = Record(options["scene"], exr_metadata(graph, budget), outputs)
     save = partial(record.write, statistics={}, complete=False)

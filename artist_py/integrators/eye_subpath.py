@@ -170,6 +170,19 @@ def is_found_by_hits_only(techniques, length, is_specular, begins_specular):
 
 
 @function
+def is_hit_weighed(method, is_only_way):
+    """Whether a hit competes with other techniques; what a method without hits still finds by them, only lens hits do."""
+    return method.hits_everything or _is_found_by_lens_hits(method.counts.lens, is_only_way)
+
+
+@function
+def _is_found_by_lens_hits(lens, is_only_way):
+    if lens is None:
+        return False
+    return is_only_way
+
+
+@function
 def emission_hit(scene, method, surface, path, length, partial, is_only_way, wavelengths):
     """Radiance of an emitter that was hit, with its weight (1.17); `Connected`, without a ray."""
     return _emission_hit(
@@ -189,7 +202,7 @@ def _emission_hit(emitters, scene, method, surface, path, length, partial, is_on
     if is_hidden(scene.needs.hidden_emitters, emitter, length):
         return no_connection(wavelengths)
     radiance = emitted_radiance(scene, emitter, -path.direction, wavelengths)
-    if not method.hits_everything:
+    if not is_hit_weighed(method, is_only_way):
         weight = 1.0 if is_only_way else 0.0
         return Connected(radiance * weight, 0, weight)
     nee_ratio = 0.0
@@ -227,7 +240,10 @@ def _sum_of_background(first, records, setup, path, length, partial, is_only_way
         if is_in_background(emitter, path.direction) and not is_hidden(
             scene.needs.hidden_emitters, emitter, length
         ):
-            weight = _background_weight(scene, setup.method, emitter, path, partial, is_only_way)
+            # Nothing else finds what the camera sees directly, see lens_hits.py.
+            weight = 1.0
+            if length > 1:
+                weight = _background_weight(scene, setup.method, emitter, path, partial, is_only_way)
             radiance = emitted_radiance(scene, emitter, -path.direction, place.wavelengths) * weight
             total = total + radiance
             _record(setup, place, HIT, length, length, path.throughput, Connected(radiance, 0, weight))
@@ -236,7 +252,7 @@ def _sum_of_background(first, records, setup, path, length, partial, is_only_way
 
 @function
 def _background_weight(scene, method, emitter, path, partial, is_only_way):
-    if not method.hits_everything:
+    if not is_hit_weighed(method, is_only_way):
         return 1.0 if is_only_way else 0.0
     nee_ratio = 0.0
     if path.pdf_solid_angle > 0.0:

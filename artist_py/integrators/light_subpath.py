@@ -15,10 +15,12 @@ from ..jit import function
 from ..scene.tables import ABSORBER
 from ..transport.connect import connect_to_camera
 from ..transport.mis import Partial, on_arrival, partial_after
+from ..transport.recording import LT
 from ..transport.roulette import local_survival, survived
 from ..transport.splats import choose_pixel, store_splat
 from ..transport.subpath import Path, go_straight, is_passed_through, scatter, vertex_at
 from ..transport.vertices import store_vertex
+from .lens_hits import longest_light_subpath, splat_lens_hit, without_hits
 from .pair import (
     BSDF,
     CHOICE,
@@ -75,10 +77,12 @@ def _walk(  # noqa: C901 - one loop, a line or two per step of the walk
 ):
     scene, limits, counts = setup.scene, setup.limits, setup.method.counts
     partial = Partial(counts.nee, counts.hit * hit_over_emission(start))
+    longest = longest_light_subpath(counts.lens, limits)
     length, rays, shadow_rays = 1, 0, 0
     while True:
         rays += 1
         hit = closest_hit(scene.geometry.embree, path.origin, path.direction, np.inf)
+        splat_lens_hit(setup, thread, index, emitter, path, partial, hit.t, wavelengths, stream, length)
         if hit.geometry == INVALID_ID:
             break
         surface = surface_at(scene.geometry, scene.needs, path.origin, path.direction, hit)
@@ -100,7 +104,7 @@ def _walk(  # noqa: C901 - one loop, a line or two per step of the walk
             shadow_rays += splat(
                 setup, thread, index, vertex, partial, survival, path, wavelengths, stream, length
             )
-        if length + 1 >= limits.max_length or random_number(stream, ROULETTE + length) >= survival:
+        if length >= longest or random_number(stream, ROULETTE + length) >= survival:
             break
         _, u_lobe = random_pair(stream, pair + CHOICE)
         step = scatter(scene, vertex, path, wavelengths, stream, pair + BSDF, u_lobe, True)
@@ -172,12 +176,13 @@ def _splat(needed, setup, thread, index, vertex, partial, survival, path, wavele
     pixel = choose_pixel(setup.pixel_filter, sensor.film_x, sensor.film_y, number, setup.work.crop)
     if pixel.index < 0:
         return 0
+    partial = without_hits(setup.method, partial)
     connected = connect_to_camera(
         setup.scene, setup.method.counts, vertex, partial, survival, sensor, wavelengths
     )
     value = path.throughput * connected.value * (pixel.weight / setup.method.n_light_paths)
     store_splat(
-        stores.techniques, stores.splats, thread, stores.paths[index], pixel.index, value, length + 1,
+        stores.techniques, stores.splats, thread, stores.paths[index], pixel.index, value, LT, length + 1,
         connected.weight,
     )  # fmt: skip
     return connected.rays

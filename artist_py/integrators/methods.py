@@ -32,22 +32,33 @@ METHODS = {
 }
 
 
-def method_of(name, n_pixels, light_paths, offset, merge_area, power=False):
+def has_lens_hits(integrator, camera):
+    """Whether the method has light that hits the lens as a technique.
+
+    Not so for cameras that are far away: nothing would hit those, and nearly nothing needs to.
+    """
+    is_lens = camera.lens is not None and camera.clip is None
+    return is_lens and integrator in METHODS and METHODS[integrator].light_image
+
+
+def method_of(name, n_pixels, light_paths, offset, merge_area, power=False, lens=False):
     """The `Method` of a name, for so many pixels, light subpaths per pixel and a merge area in render-space units^2.
 
-    `power` chooses the power heuristic (beta = 2). `offset` in [0, 1) says which pixels get one more light subpath
-    than others, where `light_paths` is not whole.
+    `power` chooses the power heuristic (beta = 2), `lens` light that hits the lens. `offset` in [0, 1) says which
+    pixels get one more light subpath than others, where `light_paths` is not whole.
     """
     n_light_paths = n_pixels * light_paths
     subset = METHODS[name]
     present = {field: getattr(subset, field) or None for field in Techniques._fields}
     counts = Counts(
-        float(subset.hit),
+        # What a method without hits finds by them nevertheless, lens hits find as well.
+        float(subset.hit or lens),
         float(subset.nee),
         light_paths if subset.connect else 0.0,
         light_paths if subset.light_image else 0.0,
         n_light_paths * merge_area if subset.merge else 0.0,
         True if power else None,
+        light_paths if lens else None,
     )
     return Method(
         Techniques(**present), counts, float(n_pixels), n_light_paths, light_paths, offset, subset.hit

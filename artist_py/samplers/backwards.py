@@ -15,7 +15,7 @@ from ..core.table import Table
 from ..integrators.bidirectional import trace_pairs
 from ..integrators.light_image import add_splats
 from ..integrators.merging import MERGES, gather
-from ..integrators.methods import METHODS, method_of
+from ..integrators.methods import METHODS, has_lens_hits, method_of
 from ..integrators.pair import Setup, Stores, path_dtype
 from ..integrators.path_tracing import RAYS, SHADOW_RAYS, STOP, Pass
 from ..transport.merge import Merging
@@ -140,6 +140,7 @@ class BackwardsSampler(StochasticSampler):
             van_der_corput(iteration),
             math.pi * radius**2,
             compiled.graph.render.heuristic == "power",
+            has_lens_hits(self.method_name, compiled.camera),
         )
         stores = Stores(self.light, self.eye, self.splats, self.paths, Table(resume), self.technique_tables)
         camera, pixel_filter = compiled.camera, compiled.pixel_filter

@@ -45,7 +45,7 @@ def memory_estimate(compiled, settings):
     light_paths = compiled.graph.render.merging.light_paths
     return {
         "film": pixels * (12 + 24 + 12 + (24 if "variance" in settings.aovs else 0) + 12 * bands),
-        "techniques": pixels * _bytes_of_techniques(compiled.graph.render, settings),
+        "techniques": pixels * _bytes_of_techniques(compiled, settings),
         "auxiliary outputs": pixels * 60 if set(settings.aovs) - {"variance"} else 0,
         "geometry": sum(array.nbytes for array in arrays) + (emitters.records.nbytes if emitters else 0),
         "acceleration structure": BYTES_PER_FACE * faces,
@@ -56,10 +56,10 @@ def memory_estimate(compiled, settings):
     }
 
 
-def _bytes_of_techniques(render, settings):
+def _bytes_of_techniques(compiled, settings):
     if not settings.techniques:
         return 0
-    return 3 * BYTES_PER_VALUE * len(techniques_of_render(render, settings.technique_length))
+    return 3 * BYTES_PER_VALUE * len(techniques_of_render(compiled, settings.technique_length))
 
 
 def _bytes_per_eye_path(render):

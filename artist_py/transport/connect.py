@@ -156,5 +156,7 @@ def connect_to_camera(scene, counts, vertex, partial, survival, sensor, waveleng
     if is_blocked(scene, vertex.surface, wi, sensor.position):
         return Connected(black(wavelengths), 1, 0.0)
     camera_density = sensor.pdf_solid_angle * there.cos_theta / distance_squared
-    weight = weight_of_light_image(counts, camera_density, bracket(counts, partial, there.pdf_rev))
+    lens_ratio = there.pdf_fwd * sensor.lens_area / distance_squared
+    light_bracket = bracket(counts, partial, there.pdf_rev)
+    weight = weight_of_light_image(counts, camera_density, light_bracket, lens_ratio)
     return Connected(there.f_cos * (weight * sensor.importance / distance_squared), 1, weight)

@@ -1,7 +1,7 @@
 """Weights of multiple importance sampling over all techniques of vertex connection and merging.
 
 A path is found by hitting an emitter (hit), next-event estimation (nee), connecting two subpaths (vc), connecting a
-light subpath to the lens (lt), or merging (vm). A subpath carries two numbers per arrived vertex, C and E, from which
+light subpath to the lens (lt), a light subpath that hits the lens (lens), or merging (vm). A subpath carries two numbers per arrived vertex, C and E, from which
 the weight of every technique follows (theory 1.3): C is what all connections that end in the edge just behind would
 do, E everything further away. In streaming form C and E change
 
@@ -34,6 +34,7 @@ class Counts(NamedTuple):
     lt: float
     vm_area: float  # a = n_vm pi r^2 of (1.7), n_vm light subpaths in the photon map; render-space units^2
     power: bool | None  # the power heuristic instead of the balance heuristic
+    lens: float | None = None  # absent for a pinhole, or a lens that light does not hit
 
 
 class Partial(NamedTuple):
@@ -130,9 +131,31 @@ def weight_of_next_event(counts, hit_ratio, emission_ratio, eye_bracket):
 
 
 @function
-def weight_of_light_image(counts, camera_density, light_bracket):
-    """(1.16) for a pinhole, or a lens that light does not hit: `camera_density` is p<_{k-1}."""
-    return share(counts.power, counts.lt, camera_density * light_bracket, 0.0)
+def weight_of_light_image(counts, camera_density, light_bracket, lens_ratio):
+    """(1.16): `camera_density` is p<_{k-1} p<_k / pc_k, and `lens_ratio` p>_k / pc_k."""
+    return share(counts.power, counts.lt, camera_density * light_bracket, _times(counts.lens, lens_ratio))
+
+
+@function
+def weight_of_lens_hit(counts, image_ratio, camera_density, partial):
+    """(1.18): `image_ratio` is pc_k / p>_k, 0 where it cannot be; `camera_density` p<_k s<_k, of point and direction."""
+    return share(counts.power, counts.lens, counts.lt * image_ratio, camera_density * partial.e)
+
+
+@function
+def eye_start(counts, camera_density, lens_area):
+    """(1.11) before arrival at the first vertex.
+
+    `camera_density` is that of the direction, sr^-1, `lens_area` the area of the lens times the cosine there.
+    """
+    return Partial(counts.lt / camera_density, _times(counts.lens, lens_area / camera_density))
+
+
+@function
+def _times(count, value):
+    if count is None:
+        return 0.0
+    return count * value
 
 
 @function

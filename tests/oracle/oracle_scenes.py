@@ -123,10 +123,19 @@ def through_lens():
     return mixed(camera)
 
 
+def wide_lens():
+    """Mirrors and more in front of a large lens that light paths hit, a pentagon."""
+    camera = look(
+        [0, -1.3, 0], [0, 0, 0], 140.0, type="thin-lens", aperture_radius=1.8, focus_distance=3.0, blades=5
+    )
+    return mixed(camera)
+
+
 SCENES = {
     "cornell": cornell,
     "mixed": mixed,
     "lens": through_lens,
+    "wide lens": wide_lens,
     "nested": nested,
     "coated": coated,
     "smooth": smooth,

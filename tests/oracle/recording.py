@@ -9,15 +9,17 @@ from typing import NamedTuple
 import numpy as np
 
 from artist_py.cameras.perspective import camera_ray, sample_film
-from artist_py.cameras.sensor import pdf_camera_direction
+from artist_py.cameras.sensor import pdf_camera_direction, projected_lens_area
 from artist_py.core.rng import random_pair, stream_of
 from artist_py.core.table import Table
-from artist_py.integrators import eye_subpath, light_subpath
+from artist_py.core.vector import dot
+from artist_py.integrators import eye_subpath, lens_hits, light_subpath
 from artist_py.integrators.methods import method_of
 from artist_py.integrators.pair import LIGHT_SEED, Setup, Stores, path_dtype
 from artist_py.integrators.path_tracing import FILM, Pass, lens_numbers
 from artist_py.integrators.reference_paths import (
     DoubleSpectrum,
+    Edge,
     EmitterHit,
     FullPath,
     Subpath,
@@ -32,7 +34,7 @@ from artist_py.integrators.reference_paths import (
 )
 from artist_py.transport import connect, merge, photon_grid
 from artist_py.transport.merge import Merging
-from artist_py.transport.mis import Partial
+from artist_py.transport.mis import eye_start
 from artist_py.transport.recording import Place
 from artist_py.transport.roulette import Limits, local_survival
 from artist_py.transport.sensing import Sensing
@@ -69,7 +71,7 @@ def pool_of(dtype):
     )
 
 
-def counts_in(method, counts):
+def counts_in(method, counts, hits_everything=None):
     """The method with other counts; what has none is absent."""
     techniques = method.techniques._replace(
         nee=counts.nee > 0 or None,
@@ -78,10 +80,12 @@ def counts_in(method, counts):
         merge=counts.vm_area > 0 or None,
         light_paths=True,
     )
-    return method._replace(techniques=techniques, counts=counts, hits_everything=counts.hit > 0)
+    if hits_everything is None:
+        hits_everything = counts.hit > 0
+    return method._replace(techniques=techniques, counts=counts, hits_everything=hits_everything)
 
 
-def setup_of(compiled, counts, wavelengths):
+def setup_of(compiled, counts, wavelengths, hits_everything=None):
     """The `Setup` of the kernels, for one light and one eye subpath at a time."""
     graph = compiled.graph
     width, height = graph.film.resolution
@@ -90,7 +94,7 @@ def setup_of(compiled, counts, wavelengths):
     lanes = len(wavelengths.values)
     light, eye = pool_of(vertex_dtype(lanes)), pool_of(vertex_dtype(lanes))
     stores = Stores(light, eye, pool_of(splat_dtype(lanes)), Table(np.zeros(1, path_dtype)), None, None)
-    method = counts_in(method_of("vcm", width * height, 1.0, 0.0, 1.0), counts)
+    method = counts_in(method_of("vcm", width * height, 1.0, 0.0, 1.0), counts, hits_everything)
     limits = Limits(graph.render.max_path_length, 0)
     return Setup(
         compiled.scene, compiled.camera, compiled.pixel_filter, sensing, limits, work, method, stores
@@ -100,10 +104,10 @@ def setup_of(compiled, counts, wavelengths):
 class Recorder:
     """Traces pairs of subpaths and notes every weight; `patch` is pytest's monkeypatch."""
 
-    def __init__(self, patch, compiled, counts, lanes=1):
+    def __init__(self, patch, compiled, counts, lanes=1, hits_everything=None):
         first, last = compiled.wavelength_range
         self.wavelengths = DoubleSpectrum(first + (last - first) * (np.arange(lanes) + 0.5) / lanes)
-        self.setup, self.patch = setup_of(compiled, counts, self.wavelengths), patch
+        self.setup, self.patch = setup_of(compiled, counts, self.wavelengths, hits_everything), patch
         self.found, self.light, self.eye, self.walk = [], None, None, None
         self._listen_to_walks()
         self._listen_to_connections()
@@ -149,6 +153,8 @@ class Recorder:
     def _listen_to_connections(self):
         self._before(light_subpath, "connect_to_camera", lambda *a: setattr(self, "sensor", a[5]))
         self._listen(connect, "weight_of_light_image", self._note_light_image)
+        self._listen(lens_hits, "hit_lens", self._meet_lens)
+        self._listen(lens_hits, "weight_of_lens_hit", self._note_lens_hit)
         self._listen(connect, "choose_emitter", lambda index, *_: setattr(self, "emitter", index))
         self._before(connect, "emission_over_next_event", lambda *a: setattr(self, "point", a[2]))
         self._listen(connect, "weight_of_next_event", self._note_next_event)
@@ -170,6 +176,17 @@ class Recorder:
         edge = connecting_edge(self.light.nodes[-1], lens)
         path = joined(self.light.nodes, self.light.edges, edge, [lens], [])
         self._note(("lt", len(path.edges)), weight, path)
+
+    def _meet_lens(self, hit, camera, origin, direction):
+        point = end_node(origin + direction * hit.t, camera.forward, 0.0, -1)
+        way = point.surface.position - self.light.nodes[-1].surface.position
+        cosine = abs(dot(direction, self.light.nodes[-1].surface.normal))
+        self.lens = point, Edge(direction, dot(way, way), cosine, hit.cos_theta)
+
+    def _note_lens_hit(self, weight, *_):
+        lens, edge = self.lens
+        path = joined(self.light.nodes, self.light.edges, edge, [lens], [])
+        self._note(("lens", len(path.edges) + 1), weight, path)
 
     def _note_next_event(self, weight, *_):
         light = end_node(self.point.position, self.point.normal, self.point.extent, self.emitter)
@@ -195,7 +212,7 @@ class Recorder:
         self.hit = EmitterHit(len(self.eye.nodes), surface, edge, None)
 
     def _note_only_way(self, radiance, scene, method, surface, path, length, partial, is_only_way, *_):
-        if not method.hits_everything and surface.emitter >= 0:
+        if surface.emitter >= 0 and not eye_subpath.is_hit_weighed(method, is_only_way):
             self._note_hit(1.0 if is_only_way else 0.0)
 
     def _note_hit(self, weight):
@@ -223,10 +240,9 @@ class Recorder:
         self.walk = self.eye = Subpath([end_node(lens_point, camera.forward, 0.0, -1)], [], [], [])
         path = seen_from(start_path(origin, direction, setup.sensing, camera.media), lens_point)
         density = pdf_camera_direction(camera, setup.method.n_pixels, direction)
+        start = eye_start(counts, density, projected_lens_area(camera, direction))
         place = Place(y, x, self.wavelengths, self.wavelengths)
-        eye_subpath.trace_eye_subpath(
-            setup, 0, 0, stream, place, path, Partial(counts.lt / density, 0.0), film_weight
-        )
+        eye_subpath.trace_eye_subpath(setup, 0, 0, stream, place, path, start, film_weight)
 
     def _merge_all(self):
         """Merge every stored eye vertex with every photon, near or not: weights do not ask."""

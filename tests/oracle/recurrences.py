@@ -2,7 +2,8 @@
 
 from typing import NamedTuple
 
-from artist_py.cameras.sensor import pdf_camera_direction
+from artist_py.cameras.lens import aperture_area
+from artist_py.cameras.sensor import pdf_camera_direction, projected_lens_area
 from artist_py.core.frame import to_local
 from artist_py.emitters.dispatch import pdf_emitter
 from artist_py.emitters.emission import pdf_emission_of_hit
@@ -49,13 +50,13 @@ def start_densities(case):
 
 
 def light_partials(case):
-    """C and E on arrival at vertices 1 to k - 1 of the light subpath."""
+    """C and E on arrival at vertices 1 to k of the light subpath, the lens being k."""
     counts, edges = case.setup.method.counts, case.path.edges
     emission, next_event = start_densities(case)
     cosine = edges[0].cos_start
     partial = Partial(counts.nee * next_event * cosine / emission, counts.hit * cosine / emission)
     found = [None, mis.on_arrival(partial, 1.0, edges[0].cos_end)]
-    for i in range(1, case.length - 1):
+    for i in range(1, case.length):
         if case.path.nodes[i].is_delta:
             partial = mis.after_delta(found[i], edges[i - 1].cos_end, case.eta(i))
         else:
@@ -70,7 +71,7 @@ def eye_partials(case):
     setup, edges = case.setup, case.path.edges
     counts, last = setup.method.counts, case.length - 1
     density = pdf_camera_direction(setup.camera, setup.method.n_pixels, -edges[last].direction)
-    partial = Partial(counts.lt / density, 0.0)
+    partial = mis.eye_start(counts, density, projected_lens_area(setup.camera, -edges[last].direction))
     found = {last: mis.on_arrival(partial, edges[last].distance_squared, edges[last].cos_start)}
     for i in range(last, 0, -1):
         if case.path.nodes[i].is_delta:
@@ -124,12 +125,19 @@ def _weights_of_ends(case, light, eye, can_join):
             ratio,
             mis.bracket(counts, eye[1], case.density(1, True)),
         )
+    last = edges[k - 1]
+    density = pdf_camera_direction(setup.camera, setup.method.n_pixels, -last.direction)
+    area, ratio = 1.0 if setup.camera.lens is None else aperture_area(setup.camera.lens), 0.0
+    if can_join[k - 1]:
+        ratio = case.density(k - 1, True) * last.cos_end * area / last.distance_squared
     if counts.lt > 0.0 and can_join[k - 1]:
-        last = edges[k - 1]
-        density = pdf_camera_direction(setup.camera, setup.method.n_pixels, -last.direction)
         weights["lt", k] = mis.weight_of_light_image(
             counts,
             density * last.cos_start / last.distance_squared,
             mis.bracket(counts, light[k - 1], case.density(k - 1, False)),
+            ratio,
         )
+    if counts.lens is not None:
+        image_ratio = 1.0 / ratio if ratio > 0.0 else 0.0
+        weights["lens", k + 1] = mis.weight_of_lens_hit(counts, image_ratio, density / area, light[k])
     return weights

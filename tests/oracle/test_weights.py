@@ -10,6 +10,7 @@ import math
 
 import oracle_scenes
 import pytest
+import recording
 from recording import Recorder
 from recurrences import Case, all_weights
 
@@ -36,11 +37,21 @@ SUBSETS = {
     "many": Counts(1, 4, 2, 3, 7 * VM, None),
     "parts": Counts(1, 0.7, 0.25, 0.31, 0.4 * VM, None),
 }
+# With light that hits the lens.
+WITH_LENS = {
+    "lens": Counts(1, 0, 0, 0, 0, None, 1),
+    "pt+lens": Counts(1, 1, 0, 0, 0, None, 0.5),
+    "lt+lens": Counts(1, 0, 0, 1, 0, None, 1),
+    "bpt": Counts(1, 1, 1, 1, 0, None, 1),
+    "vcm": Counts(1, 1, 1, 1, VM, None, 1),
+    "parts": Counts(1, 0.7, 0.25, 0.31, 0.4 * VM, None, 0.6),
+}
 EXPECTED = {
     "hit": lambda counts: True,
     "nee": lambda counts: counts.nee > 0,
     "vc": lambda counts: counts.vc > 0,
     "lt": lambda counts: counts.lt > 0,
+    "lens": lambda counts: counts.lens is not None,
     "vm": lambda counts: counts.vm_area > 0,
 }
 
@@ -50,9 +61,9 @@ def scene_named(name):
     return oracle_scenes.SCENES[name]()
 
 
-def record(patch, name, counts, pairs, lanes=1):
+def record(patch, name, counts, pairs, lanes=1, hits_everything=None):
     """A `Recorder` that has traced so many pairs over the image."""
-    recorder = Recorder(patch, scene_named(name), counts, lanes)
+    recorder = Recorder(patch, scene_named(name), counts, lanes, hits_everything)
     for pair in range(pairs):
         recorder.trace(pair, pair % 8, 5 * pair // 2 % 8)
     return recorder
@@ -61,8 +72,9 @@ def record(patch, name, counts, pairs, lanes=1):
 def brute_force(recorder, path):
     setup = recorder.setup
     return technique_densities(
-        setup.scene, setup.camera, setup.method.counts, setup.method.n_pixels, recorder.wavelengths, path
-    )
+        setup.scene, setup.camera, setup.method.counts, setup.method.n_pixels, recorder.wavelengths, path,
+        setup.method.hits_everything or setup.method.counts.lens is None,
+    )  # fmt: skip
 
 
 def deviations(recorder):
@@ -106,6 +118,30 @@ def test_every_subset(monkeypatch, subset):
     assert_exact(recorder, 3)
 
 
+@pytest.mark.parametrize("power", [None, True], ids=["balance", "power"])
+@pytest.mark.parametrize("subset", WITH_LENS)
+def test_lens_hits(monkeypatch, subset, power):
+    counts = WITH_LENS[subset]._replace(power=power)
+    recorder = record(monkeypatch, "wide lens", counts, 80)
+    assert kinds_of(recorder) == {kind for kind, is_expected in EXPECTED.items() if is_expected(counts)}
+    lens_paths = [found.path for found in recorder.found if found.technique[0] == "lens"]
+    assert len(lens_paths) >= 10
+    assert any(path.nodes[-2].is_delta for path in lens_paths)
+    assert any(len(path.edges) == 1 for path in lens_paths)
+    assert_exact(recorder, 20)
+
+
+@pytest.mark.parametrize("power", [None, True], ids=["balance", "power"])
+def test_lens_hits_of_light_tracing(monkeypatch, power):
+    """Hits take part only where the vertex before the lens cannot be connected to it."""
+    counts = WITH_LENS["lt+lens"]._replace(power=power)
+    recorder = record(monkeypatch, "wide lens", counts, 120, hits_everything=False)
+    hits = [found for found in recorder.found if found.technique[0] == "hit" and 0.0 < found.weight < 1.0]
+    assert any(found.path.nodes[-2].is_delta for found in hits)
+    assert kinds_of(recorder) == {"hit", "lt", "lens"}
+    assert_exact(recorder, 60)
+
+
 @pytest.mark.parametrize("radius", [1e-7, 1e-3, 0.1, 1e4])
 @pytest.mark.parametrize("power", [None, True], ids=["balance", "power"])
 def test_every_radius(monkeypatch, radius, power):
@@ -121,6 +157,15 @@ def test_roulette_is_part_of_the_densities(monkeypatch):
     forget = [found._replace(path=found.path._replace(nodes=certain(found.path))) for found in recorder.found]
     recorder.found = forget
     assert deviations(recorder)[0][0] > 0.1
+
+
+def test_lens_hits_are_part_of_the_eye_subpath(monkeypatch):
+    """Eye subpaths that know nothing of lens hits weigh the other techniques too much."""
+    monkeypatch.setattr(
+        recording, "eye_start", lambda counts, density, area: mis.Partial(counts.lt / density, 0.0)
+    )
+    recorder = record(monkeypatch, "wide lens", WITH_LENS["vcm"], 20)
+    assert deviations(recorder)[0][0] > 0.01
 
 
 def certain(path):
@@ -151,10 +196,16 @@ def test_length_limit(monkeypatch):
 
 
 @pytest.mark.parametrize("power", [None, True], ids=["balance", "power"])
-@pytest.mark.parametrize("subset", ["bpt", "pt+vm", "vcm", "parts"])
-def test_weights_sum_to_one(monkeypatch, subset, power):
+@pytest.mark.parametrize(
+    ("name", "counts"),
+    [
+        *(("mixed", SUBSETS[name]) for name in ("bpt", "pt+vm", "vcm", "parts")),
+        ("wide lens", WITH_LENS["parts"]),
+    ],
+)
+def test_weights_sum_to_one(monkeypatch, name, counts, power):
     """Of all techniques that can find a path, by the recurrences along that path from both ends."""
-    recorder = record(monkeypatch, "mixed", SUBSETS[subset]._replace(power=power), 20)
+    recorder = record(monkeypatch, name, counts._replace(power=power), 20)
     summed = 0
     for _, _, path in recorder.found:
         if len(path.edges) > 1:

@@ -1,5 +1,7 @@
 """Images of techniques: which there are, how they are kept, and how they are shown."""
 
+from types import SimpleNamespace
+
 import numba
 import numpy as np
 import pytest
@@ -38,18 +40,20 @@ class TestWhichThereAre:
 
     def test_of_a_length(self):
         names = [each.name for each in techniques_of(KINDS, 4) if each.length == 4]
-        assert names == ["hit", "nee", "vc_s2_t3", "vc_s3_t2", "lt", "vm_m1", "vm_m2", "vm_m3"]
+        assert names == [
+            "hit", "nee", "vc_s2_t3", "vc_s3_t2", "lt", "lens", "vm_m1", "vm_m2", "vm_m3"
+        ]  # fmt: skip
 
     @pytest.mark.parametrize("length", range(2, 9))
     def test_vertices(self, length):
-        """All but merges have a light and an eye subpath that make up the k + 1 vertices, s from 0 to k."""
+        """All but merges have a light and an eye subpath that make up the k + 1 vertices, s from 0 to k + 1."""
         found = [each for each in techniques_of(KINDS, 8) if each.length == length]
-        assert [each.s for each in found if each.kind != "vm"] == list(range(length + 1))
+        assert [each.s for each in found if each.kind != "vm"] == list(range(length + 2))
         assert all(each.s + each.t == length + 1 for each in found if each.kind != "vm")
         assert [each.m for each in found if each.kind == "vm"] == list(range(1, length))
 
     def test_emitters_that_are_seen(self):
-        assert techniques_of(KINDS, 1) == (Technique("hit", 1, 0, 2),)
+        assert techniques_of(KINDS, 1) == (Technique("hit", 1, 0, 2), Technique("lens", 1, 2, 0))
 
     def test_longer_paths_share(self):
         techniques = techniques_of(("hit", "vm"), 30, 2)
@@ -58,11 +62,16 @@ class TestWhichThereAre:
 
     def test_of_methods(self):
         assert TECHNIQUES == KINDS
-        assert kinds_of("pt") == ("hit", "nee")
-        assert kinds_of("ppm") == ("hit", "vm")
-        assert kinds_of("vcm") == KINDS
+        pinhole, lens, far = (
+            SimpleNamespace(lens=lens, clip=clip) for lens, clip in ((None, None), (1, None), (1, 9.0))
+        )
+        assert kinds_of("pt", lens) == ("hit", "nee")
+        assert kinds_of("ppm", lens) == ("hit", "vm")
+        assert kinds_of("lt", lens) == ("hit", "lt", "lens")
+        assert kinds_of("vcm", lens) == KINDS
+        assert kinds_of("vcm", pinhole) == kinds_of("vcm", far) == ("hit", "nee", "vc", "lt", "vm")
         with pytest.raises(OptionError, match="reference"):
-            kinds_of("reference")
+            kinds_of("reference", pinhole)
 
 
 class TestRows:
@@ -156,9 +165,9 @@ class TestRenders:
 
     def test_memory(self, compiled):
         settings = RenderSettings(iterations=1, techniques=True)
-        n_images = len(techniques_of_render(compiled.graph.render, 8))
+        n_images = len(techniques_of_render(compiled, 8))
         assert n_images == 1 + 7 * 2 + 2
-        stored = TechniqueRecorder(techniques_of_render(compiled.graph.render, 8), 6, 8)
+        stored = TechniqueRecorder(techniques_of_render(compiled, 8), 6, 8)
         arrays = [*stored.tables[:2], stored.film.weighted, stored.film.unweighted]
         assert memory_estimate(compiled, settings)["techniques"] == sum(each.nbytes for each in arrays)
         assert memory_estimate(compiled, RenderSettings(iterations=1))["techniques"] == 0
@@ -171,7 +180,7 @@ class TestRenders:
     @pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
     def test_no_code_without(self, compiled):
         """The LLVM names every function that was compiled for a kernel, also where it was inlined."""
-        film = TechniqueRecorder(techniques_of_render(compiled.graph.render, 8), 6, 8).film
+        film = TechniqueRecorder(techniques_of_render(compiled, 8), 6, 8).film
         code = {}
         for wanted in (True, False):
             recorder = TechniqueRecorder(film.techniques, 6, 8) if wanted else None

@@ -58,7 +58,7 @@ def _splat_lens_hit(
     if pixel.index < 0:
         return
     weight = _weight(setup.camera, setup.method, path, partial, hit)
-    scale = weight * hit.importance * pixel.weight / setup.method.n_light_paths
+    scale = weight * hit.importance * pixel.weight / setup.method.n_image_paths
     stores = setup.stores
     store_splat(
         stores.techniques, stores.splats, thread, stores.paths[index], pixel.index, path.throughput * scale, LENS,

@@ -14,9 +14,10 @@ from ..geometry.surface import offset_position, surface_at
 from ..jit import function
 from ..scene.tables import ABSORBER
 from ..transport.connect import connect_to_camera
-from ..transport.mis import Partial, on_arrival, partial_after
+from ..transport.mis import Partial, counts_at, on_arrival, partial_after
 from ..transport.recording import LT
 from ..transport.roulette import local_survival, survived
+from ..transport.shares import is_chosen, is_vertex_wanted
 from ..transport.splats import choose_pixel, store_splat
 from ..transport.subpath import Path, go_straight, is_passed_through, scatter, vertex_at
 from ..transport.vertices import store_vertex
@@ -82,7 +83,8 @@ def _walk(  # noqa: C901 - one loop, a line or two per step of the walk
     while True:
         rays += 1
         hit = closest_hit(scene.geometry.embree, path.origin, path.direction, np.inf)
-        splat_lens_hit(setup, thread, index, emitter, path, partial, hit.t, wavelengths, stream, length)
+        if is_chosen(setup.method.chosen.light_image, index):
+            splat_lens_hit(setup, thread, index, emitter, path, partial, hit.t, wavelengths, stream, length)
         if hit.geometry == INVALID_ID:
             break
         surface = surface_at(scene.geometry, scene.needs, path.origin, path.direction, hit)
@@ -100,7 +102,7 @@ def _walk(  # noqa: C901 - one loop, a line or two per step of the walk
         survival = local_survival(scene, vertex, wavelengths)
         pair = FIRST_VERTEX + (length - 1) * PAIRS_PER_VERTEX
         if not is_delta_bsdf(material):
-            _store(setup.stores.light, setup.stores.paths, thread, index, surface, path, partial, length)
+            _store(setup, thread, index, surface, path, partial, length)
             shadow_rays += splat(
                 setup, thread, index, vertex, partial, survival, path, wavelengths, stream, length
             )
@@ -110,7 +112,8 @@ def _walk(  # noqa: C901 - one loop, a line or two per step of the walk
         step = scatter(scene, vertex, path, wavelengths, stream, pair + BSDF, u_lobe, True)
         if step.path.is_absorbed:
             break
-        partial = partial_after(counts, partial, step, surface, survival, cos_in)
+        counts_here = counts_at(scene.needs.sharp, counts, material)
+        partial = partial_after(counts_here, partial, step, surface, survival, cos_in)
         path = survived(step.path, survival)
         length += 1
     return Walk(black(wavelengths), rays, shadow_rays)
@@ -147,7 +150,13 @@ def _next_record(pool, thread):
 
 
 @function
-def _store(pool, paths, thread, index, surface, path, partial, length):
+def _store(setup, thread, index, surface, path, partial, length):
+    if is_vertex_wanted(setup.method.chosen, index):
+        _store_in(setup.stores.light, setup.stores.paths, thread, index, surface, path, partial, length)
+
+
+@function
+def _store_in(pool, paths, thread, index, surface, path, partial, length):
     if pool is None:
         return
     store_vertex(pool, thread, surface, -path.direction, path.throughput, partial, length, index)
@@ -167,6 +176,8 @@ def splat(setup, thread, index, vertex, partial, survival, path, wavelengths, st
 def _splat(needed, setup, thread, index, vertex, partial, survival, path, wavelengths, stream, length):
     if needed is None:
         return 0
+    if not is_chosen(setup.method.chosen.light_image, index):
+        return 0
     stores, pair = setup.stores, FIRST_VERTEX + (length - 1) * PAIRS_PER_VERTEX
     u, v = random_pair(stream, pair + SENSOR)
     sensor = connect_to_lens(setup.camera, setup.method.n_pixels, vertex.surface.position, u, v)
@@ -180,7 +191,7 @@ def _splat(needed, setup, thread, index, vertex, partial, survival, path, wavele
     connected = connect_to_camera(
         setup.scene, setup.method.counts, vertex, partial, survival, sensor, wavelengths
     )
-    value = path.throughput * connected.value * (pixel.weight / setup.method.n_light_paths)
+    value = path.throughput * connected.value * (pixel.weight / setup.method.n_image_paths)
     store_splat(
         stores.techniques, stores.splats, thread, stores.paths[index], pixel.index, value, LT, length + 1,
         connected.weight,

@@ -12,6 +12,7 @@ from ..transport.mis import Counts
 from ..transport.recording import TechniqueTables
 from ..transport.roulette import Limits
 from ..transport.sensing import Sensing
+from ..transport.shares import Chosen
 from ..transport.vertices import Pool
 from .path_tracing import Pass
 
@@ -55,6 +56,10 @@ class Method(NamedTuple):
     light_paths: float  # per pixel
     offset: float  # in [0, 1): which pixels get one more where `light_paths` is not whole
     hits_everything: bool  # hitting an emitter is a technique like the others; else only where no other can
+    shadow_rays: int | None  # per eye vertex; absent where it is one
+    chosen: Chosen  # light subpaths, by what is done with them
+    n_image_paths: float  # of them, those that the camera sees
+    n_photon_paths: float  # and those that are merged with
 
 
 class Stores(NamedTuple):

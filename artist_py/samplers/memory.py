@@ -4,7 +4,7 @@ import numpy as np
 
 from ..core.table import Table
 from ..errors import OptionError
-from ..integrators.methods import METHODS
+from ..integrators.methods import METHODS, subset_of
 from ..transport.photon_grid import photon_dtype
 from ..transport.splats import splat_dtype
 from ..transport.vertices import vertex_dtype
@@ -63,13 +63,18 @@ def _bytes_of_techniques(compiled, settings):
 
 
 def _bytes_per_eye_path(render):
-    method = METHODS.get(render.integrator)
+    method = _subset(render)
     return RECORDS_PER_PATH * vertex_dtype(render.hero_count).itemsize if method and method.merge else 0
+
+
+def _subset(render):
+    """The `Subset` of a bidirectional method, None for others."""
+    return subset_of(render.integrator, render.samples) if render.integrator in METHODS else None
 
 
 def _bytes_per_light_path(render):
     """Stored vertices, their copies in the photon grid, and splats."""
-    method, lanes = METHODS.get(render.integrator), render.hero_count
+    method, lanes = _subset(render), render.hero_count
     if method is None:
         return 0
     size = 40

@@ -18,7 +18,7 @@ from ..emitters.emission import emission_over_next_event
 from ..geometry.embree import is_occluded
 from ..geometry.surface import leave_surface, offset_position
 from ..jit import function
-from .mis import bracket, weight_of_connection, weight_of_light_image, weight_of_next_event
+from .mis import bracket, counts_at, weight_of_connection, weight_of_light_image, weight_of_next_event
 from .subpath import adjoint_factor, is_on_side, on_geometric_side
 
 
@@ -51,6 +51,13 @@ def scattering_towards(scene, vertex, wi_world, wavelengths, survival, light_wal
         abs(dot(wi_world, vertex.surface.normal)),
         pdf == 0.0 or not (agrees or _may_leave(light_walk)),
     )
+
+
+@function
+def _bracket_at(scene, counts, vertex, partial, pdf_rev):
+    """(1.10) or (1.12) at a vertex."""
+    material = scene.materials[vertex.surface.material]
+    return bracket(counts_at(scene.needs.sharp, counts, material), partial, pdf_rev)
 
 
 @function
@@ -110,7 +117,7 @@ def _to_light(emitters, scene, counts, vertex, partial, survival, wavelengths, u
         counts,
         can_be_hit(scene.needs.surfaceless_emitters, emitter) * there.pdf_fwd / pdf_light,
         emission * there.cos_theta,
-        bracket(counts, partial, there.pdf_rev),
+        _bracket_at(scene, counts, vertex, partial, there.pdf_rev),
     )
     radiance = emitted_radiance(scene, emitter, -wi, wavelengths)
     return Connected(radiance * there.f_cos * (weight / pdf_light), 1, weight)
@@ -136,9 +143,9 @@ def connect_vertices(scene, counts, eye, eye_partial, eye_survival, light, light
     weight = weight_of_connection(
         counts,
         here.pdf_fwd * there.cos_theta / distance_squared,
-        bracket(counts, light.partial, there.pdf_rev),
+        _bracket_at(scene, counts, light.vertex, light.partial, there.pdf_rev),
         there.pdf_fwd * here.cos_theta / distance_squared,
-        bracket(counts, eye_partial, here.pdf_rev),
+        _bracket_at(scene, counts, eye, eye_partial, here.pdf_rev),
     )
     value = light.throughput * here.f_cos * there.f_cos * (weight / (counts.vc * distance_squared))
     return Connected(value, 1, weight)
@@ -157,6 +164,6 @@ def connect_to_camera(scene, counts, vertex, partial, survival, sensor, waveleng
         return Connected(black(wavelengths), 1, 0.0)
     camera_density = sensor.pdf_solid_angle * there.cos_theta / distance_squared
     lens_ratio = there.pdf_fwd * sensor.lens_area / distance_squared
-    light_bracket = bracket(counts, partial, there.pdf_rev)
+    light_bracket = _bracket_at(scene, counts, vertex, partial, there.pdf_rev)
     weight = weight_of_light_image(counts, camera_density, light_bracket, lens_ratio)
     return Connected(there.f_cos * (weight * sensor.importance / distance_squared), 1, weight)

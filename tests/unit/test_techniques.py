@@ -264,7 +264,7 @@ class TestContactSheet:
         lit = (sheet[..., 1] >= 0.5) & (sheet[..., 0] == 0)
         step = (sheet.shape[0] - GAP) // 3
         for row, n_lit, last in ((0, 0, 0), (1, 2, 3.8), (2, 2, 4.3)):
-            # The sum and the light image; the latter is the last of its row, which is centred above 4 columns.
+            # The sum and the light image; of its row, which is centred above 5 columns, only lens hits come after it.
             below = lit[GAP + row * step : GAP + row * step + WIDTH]
             assert below.sum() == n_lit * WIDTH * WIDTH
             if n_lit:

@@ -4,6 +4,7 @@ Nothing is evaluated twice: the functions that kernels call are replaced by ones
 vertices and photons are float64 here, so that what is read again is what was stored.
 """
 
+from types import SimpleNamespace
 from typing import NamedTuple
 
 import numpy as np
@@ -12,21 +13,22 @@ from artist_py.cameras.perspective import camera_ray, sample_film
 from artist_py.cameras.sensor import pdf_camera_direction, projected_lens_area
 from artist_py.core.rng import random_pair, stream_of
 from artist_py.core.table import Table
-from artist_py.core.vector import dot
 from artist_py.integrators import eye_subpath, lens_hits, light_subpath
 from artist_py.integrators.methods import method_of
 from artist_py.integrators.pair import LIGHT_SEED, Setup, Stores, path_dtype
 from artist_py.integrators.path_tracing import FILM, Pass, lens_numbers
 from artist_py.integrators.reference_paths import (
     DoubleSpectrum,
-    Edge,
     EmitterHit,
     FullPath,
     Subpath,
+    background_hit,
     connecting_edge,
     edge_to,
     end_node,
     joined,
+    lane_left,
+    light_node,
     merged,
     node_at,
     path_of_hit,
@@ -89,7 +91,8 @@ def setup_of(compiled, counts, wavelengths, hits_everything=None):
     """The `Setup` of the kernels, for one light and one eye subpath at a time."""
     graph = compiled.graph
     width, height = graph.film.resolution
-    sensing = Sensing(wavelengths * 0.0, None, Table(compiled.nodes), None, None)
+    ratio = wavelengths * 0.0 + 1.0 if compiled.scene.needs.dispersion else None
+    sensing = Sensing(wavelengths * 0.0, ratio, Table(compiled.nodes), None, None)
     work = Pass(SEED, 0, 0, (0, width, 0, height), width, None)
     lanes = len(wavelengths.values)
     light, eye = pool_of(vertex_dtype(lanes)), pool_of(vertex_dtype(lanes))
@@ -138,7 +141,7 @@ class Recorder:
             self._listen(module, "scatter", self._leave)
 
     def _begin_light(self, start):
-        node = end_node(start.position, start.normal, start.extent, self.emitter)
+        node = light_node(self.setup.scene, self.emitter, start)
         self.walk = self.light = Subpath([node], [], [], [])
 
     def _arrive(self, vertex, scene, surface, path, wavelengths):
@@ -146,7 +149,8 @@ class Recorder:
         self.walk.nodes.append(node_at(scene, vertex, path.media, wavelengths))
 
     def _leave(self, step, *_):
-        self.walk.nodes[-1] = self.walk.nodes[-1]._replace(is_delta=step.is_delta)
+        lane = lane_left(step.path)
+        self.walk.nodes[-1] = self.walk.nodes[-1]._replace(is_delta=step.is_delta, lane=lane)
 
     # --- connections
 
@@ -179,9 +183,8 @@ class Recorder:
 
     def _meet_lens(self, hit, camera, origin, direction):
         point = end_node(origin + direction * hit.t, camera.forward, 0.0, -1)
-        way = point.surface.position - self.light.nodes[-1].surface.position
-        cosine = abs(dot(direction, self.light.nodes[-1].surface.normal))
-        self.lens = point, Edge(direction, dot(way, way), cosine, hit.cos_theta)
+        path = SimpleNamespace(direction=direction)
+        self.lens = point, edge_to(point.surface, path, self.light.nodes[-1])
 
     def _note_lens_hit(self, weight, *_):
         lens, edge = self.lens
@@ -189,7 +192,7 @@ class Recorder:
         self._note(("lens", len(path.edges) + 1), weight, path)
 
     def _note_next_event(self, weight, *_):
-        light = end_node(self.point.position, self.point.normal, self.point.extent, self.emitter)
+        light = light_node(self.setup.scene, self.emitter, self.point)
         edge = connecting_edge(light, self.eye.nodes[-1])
         self._note(("nee", 1), weight, joined([light], [], edge, self.eye.nodes, self.eye.edges))
 
@@ -204,12 +207,18 @@ class Recorder:
 
     def _listen_to_hits(self):
         self._before(eye_subpath, "emission_hit", self._note_surface)
+        self._before(eye_subpath, "_background_weight", self._note_background)
         self._listen(eye_subpath, "emission_hit", self._note_only_way)
         self._listen(eye_subpath, "weight_of_hit", lambda weight, *_: self._note_hit(weight))
 
     def _note_surface(self, scene, method, surface, path, *_):
         edge = edge_to(surface, path, self.eye.nodes[-1])
         self.hit = EmitterHit(len(self.eye.nodes), surface, edge, None)
+
+    def _note_background(self, scene, method, emitter, path, *_):
+        records = scene.emitters.records
+        number = next(i for i in range(records.shape[0]) if records[i] == emitter)
+        self.hit = background_hit(scene, self.eye, path, number)
 
     def _note_only_way(self, radiance, scene, method, surface, path, length, partial, is_only_way, *_):
         if surface.emitter >= 0 and not eye_subpath.is_hit_weighed(method, is_only_way):
@@ -257,6 +266,8 @@ class Recorder:
 
     def _merge(self, stored, survival, light):
         setup, i, j = self.setup, stored.length, light.length
+        if not self.light.nodes[j].can_merge:  # such are no photons
+            return
         photon = np.zeros(1, doubled(photon_grid.photon_dtype(len(self.wavelengths.values)))).view(
             np.recarray
         )

@@ -41,6 +41,13 @@ class Case(NamedTuple):
         return index[0] / index[1]
 
 
+def counts_of_vertex(case, i):
+    """The counts at vertex i."""
+    scene = case.setup.scene
+    material = scene.materials[case.path.nodes[i].surface.material]
+    return mis.counts_at(scene.needs.sharp, case.setup.method.counts, material)
+
+
 def start_densities(case):
     """`(emission, next event)` of the light end: p>_0 s>_0, and pc_0 per solid angle at the second vertex."""
     scene, first, edge = case.setup.scene, case.path.nodes[0].surface, case.path.edges[0]
@@ -61,7 +68,7 @@ def light_partials(case):
             partial = mis.after_delta(found[i], edges[i - 1].cos_end, case.eta(i))
         else:
             densities = case.density(i, True), case.density(i, False)
-            partial = mis.after_scatter(counts, found[i], *densities, edges[i].cos_start)
+            partial = mis.after_scatter(counts_of_vertex(case, i), found[i], *densities, edges[i].cos_start)
         found.append(mis.on_arrival(partial, edges[i].distance_squared, edges[i].cos_end))
     return found
 
@@ -78,7 +85,7 @@ def eye_partials(case):
             partial = mis.after_delta(found[i], edges[i].cos_start, 1.0 / case.eta(i))
         else:
             densities = case.density(i, False), case.density(i, True)
-            partial = mis.after_scatter(counts, found[i], *densities, edges[i - 1].cos_end)
+            partial = mis.after_scatter(counts_of_vertex(case, i), found[i], *densities, edges[i - 1].cos_end)
         found[i - 1] = mis.on_arrival(partial, edges[i - 1].distance_squared, edges[i - 1].cos_start)
     return found
 
@@ -95,12 +102,12 @@ def all_weights(case):
             weights["vc", s] = mis.weight_of_connection(
                 counts,
                 case.density(s, False) * edge.cos_start / edge.distance_squared,
-                mis.bracket(counts, light[s - 1], case.density(s - 1, False)),
+                mis.bracket(counts_of_vertex(case, s - 1), light[s - 1], case.density(s - 1, False)),
                 case.density(s - 1, True) * edge.cos_end / edge.distance_squared,
-                mis.bracket(counts, eye[s], case.density(s, True)),
+                mis.bracket(counts_of_vertex(case, s), eye[s], case.density(s, True)),
             )
     for m in range(1, k):
-        if counts.vm_area > 0.0 and can_join[m]:
+        if counts.vm_area > 0.0 and can_join[m] and case.path.nodes[m].can_merge:
             brackets = (
                 mis.bracket(counts, light[m], case.density(m, False)),
                 mis.bracket(counts, eye[m], case.density(m, True)),
@@ -123,7 +130,7 @@ def _weights_of_ends(case, light, eye, can_join):
             counts,
             case.density(1, False) / next_event,
             ratio,
-            mis.bracket(counts, eye[1], case.density(1, True)),
+            mis.bracket(counts_of_vertex(case, 1), eye[1], case.density(1, True)),
         )
     last = edges[k - 1]
     density = pdf_camera_direction(setup.camera, setup.method.n_pixels, -last.direction)
@@ -134,7 +141,7 @@ def _weights_of_ends(case, light, eye, can_join):
         weights["lt", k] = mis.weight_of_light_image(
             counts,
             density * last.cos_start / last.distance_squared,
-            mis.bracket(counts, light[k - 1], case.density(k - 1, False)),
+            mis.bracket(counts_of_vertex(case, k - 1), light[k - 1], case.density(k - 1, False)),
             ratio,
         )
     if counts.lens is not None:

@@ -104,7 +104,8 @@ def kinds_of(recorder):
 @pytest.mark.parametrize("name", oracle_scenes.SCENES)
 def test_all_techniques(monkeypatch, name, power):
     pairs = 150 if name == "far" else 50
-    recorder = record(monkeypatch, name, SUBSETS["parts"]._replace(power=power), pairs)
+    lanes = scene_named(name).graph.render.hero_count if name == "dispersive" else 1
+    recorder = record(monkeypatch, name, SUBSETS["parts"]._replace(power=power), pairs, lanes)
     assert kinds_of(recorder) >= {"nee", "vc", "lt", "vm"}
     assert_exact(recorder, 60)
 
@@ -118,6 +119,17 @@ def test_every_subset(monkeypatch, subset):
     assert_exact(recorder, 3)
 
 
+@pytest.mark.parametrize("subset", ["bpm", "vcm", "parts"])
+def test_sharp_lobes_are_not_merged_at(monkeypatch, subset):
+    recorder = record(monkeypatch, "sharp", SUBSETS[subset], 40)
+    sharp = [
+        [node.can_join and not node.can_merge for node in found.path.nodes[1:-1]] for found in recorder.found
+    ]
+    assert sum(map(any, sharp)) >= 10
+    assert any(map(all, sharp))
+    assert_exact(recorder, 60)
+
+
 @pytest.mark.parametrize("power", [None, True], ids=["balance", "power"])
 @pytest.mark.parametrize("subset", WITH_LENS)
 def test_lens_hits(monkeypatch, subset, power):
@@ -129,6 +141,15 @@ def test_lens_hits(monkeypatch, subset, power):
     assert any(path.nodes[-2].is_delta for path in lens_paths)
     assert any(len(path.edges) == 1 for path in lens_paths)
     assert_exact(recorder, 20)
+
+
+def test_lens_hits_of_emitters_without_a_surface(monkeypatch):
+    """Such are not seen themselves, only what they light and their images in mirrors."""
+    recorder = record(monkeypatch, "lights on lens", WITH_LENS["parts"], 150)
+    lens_paths = [found.path for found in recorder.found if found.technique[0] == "lens"]
+    assert len(lens_paths) >= 5
+    assert min(len(path.edges) for path in lens_paths) == 2
+    assert_exact(recorder, 100)
 
 
 @pytest.mark.parametrize("power", [None, True], ids=["balance", "power"])

@@ -14,7 +14,7 @@ from ..geometry.surface import surface_at
 from ..jit import function
 from ..scene.tables import ABSORBER
 from ..transport.connect import Connected, connect_to_light, connect_vertices, no_connection
-from ..transport.mis import counts_at, on_arrival, partial_after, weight_of_hit
+from ..transport.mis import counts_of_material, on_arrival, partial_after, weight_of_hit
 from ..transport.recording import HIT, NEE, VC, record
 from ..transport.roulette import local_survival, survived
 from ..transport.shares import is_chosen
@@ -75,7 +75,7 @@ def trace_eye_subpath(  # noqa: PLR0915 - one loop, a line or two per step of th
         begins_specular = begins_specular and (length > 1 or step.is_delta)
         if step.path.is_absorbed or is_done(method, is_specular, begins_specular):
             break
-        counts = counts_at(scene.needs.sharp, method.counts, material)
+        counts = counts_of_material(scene.needs.sharp, method.counts, material)
         partial = partial_after(counts, partial, step, surface, survival, cos_in)
         path = survived(step.path, survival)
         length += 1

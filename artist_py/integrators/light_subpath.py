@@ -14,7 +14,7 @@ from ..geometry.surface import offset_position, surface_at
 from ..jit import function
 from ..scene.tables import ABSORBER
 from ..transport.connect import connect_to_camera
-from ..transport.mis import Partial, counts_at, on_arrival, partial_after
+from ..transport.mis import Partial, counts_of_material, on_arrival, partial_after
 from ..transport.recording import LT
 from ..transport.roulette import local_survival, survived
 from ..transport.shares import is_chosen, is_vertex_wanted
@@ -112,7 +112,7 @@ def _walk(  # noqa: C901 - one loop, a line or two per step of the walk
         step = scatter(scene, vertex, path, wavelengths, stream, pair + BSDF, u_lobe, True)
         if step.path.is_absorbed:
             break
-        counts_here = counts_at(scene.needs.sharp, counts, material)
+        counts_here = counts_of_material(scene.needs.sharp, counts, material)
         partial = partial_after(counts_here, partial, step, surface, survival, cos_in)
         path = survived(step.path, survival)
         length += 1

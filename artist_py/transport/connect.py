@@ -18,7 +18,13 @@ from ..emitters.emission import emission_over_next_event
 from ..geometry.embree import is_occluded
 from ..geometry.surface import leave_surface, offset_position
 from ..jit import function
-from .mis import bracket, counts_at, weight_of_connection, weight_of_light_image, weight_of_next_event
+from .mis import (
+    bracket,
+    counts_of_material,
+    weight_of_connection,
+    weight_of_light_image,
+    weight_of_next_event,
+)
 from .subpath import adjoint_factor, is_on_side, on_geometric_side
 
 
@@ -57,7 +63,7 @@ def scattering_towards(scene, vertex, wi_world, wavelengths, survival, light_wal
 def _bracket_at(scene, counts, vertex, partial, pdf_rev):
     """(1.10) or (1.12) at a vertex."""
     material = scene.materials[vertex.surface.material]
-    return bracket(counts_at(scene.needs.sharp, counts, material), partial, pdf_rev)
+    return bracket(counts_of_material(scene.needs.sharp, counts, material), partial, pdf_rev)
 
 
 @function

@@ -39,16 +39,16 @@ class Counts(NamedTuple):
 
 
 @function
-def counts_at(sharp, counts, material):
+def counts_of_material(sharp, counts, material):
     """The counts at a vertex: without merges where the material forbids them, M = 0 of (1.7); see `is_mergeable`."""
     if sharp is None:
         return counts
-    return counts_at_sharp(sharp, counts, material)
+    return counts_of_sharp(sharp, counts, material)
 
 
 @function
-def counts_at_sharp(sharp, counts, material):
-    """As `counts_at`, where some materials are sharp."""
+def counts_of_sharp(sharp, counts, material):
+    """As `counts_of_material`, where some materials are sharp."""
     if is_mergeable(sharp, material):
         return counts
     return Counts(counts.hit, counts.nee, counts.vc, counts.lt, 0.0, counts.power, counts.lens)

@@ -16,7 +16,7 @@ TELLTALES = {
     "images of techniques": "add_to_technique",
     "light that hits the lens": "hit_lens",
     "several shadow rays": "lattice_point",
-    "materials that are not merged at": "counts_at_sharp",
+    "materials that are not merged at": "counts_of_sharp",
 }
 LENS = {"type": "thin-lens", "aperture_radius": 0.2}
 SIZE = 8

@@ -45,7 +45,7 @@ def counts_of_vertex(case, i):
     """The counts at vertex i."""
     scene = case.setup.scene
     material = scene.materials[case.path.nodes[i].surface.material]
-    return mis.counts_at(scene.needs.sharp, case.setup.method.counts, material)
+    return mis.counts_of_material(scene.needs.sharp, case.setup.method.counts, material)
 
 
 def start_densities(case):

@@ -164,7 +164,7 @@ class TestUnweighted:
         difference = found.mean() - expected.mean()
         error = np.sqrt((expected.var(ddof=1) + found.var(ddof=1)) / self.RENDERS)
         bias = 0.05 if name.startswith("vm") else 0.0  # of merging near edges
-        assert error < 0.04 * expected.mean()
+        assert error < (0.08 if name == "lens" else 0.04) * expected.mean()  # light seldom hits the lens
         assert abs(difference) < stats.t.isf(5e-5, self.RENDERS - 1) * error + bias * expected.mean()
 
 

@@ -17,6 +17,7 @@ from artist_py.film.reading import read_image
 from artist_py.film.technique_files import check_techniques, write_techniques
 from artist_py.film.techniques import KINDS, Technique, TechniqueImages, techniques_of
 from artist_py.film.tonemap import ToneMapping
+from artist_py.integrators.methods import ALL, Samples
 from artist_py.integrators.path_tracing import trace_paths
 from artist_py.samplers.memory import memory_estimate
 from artist_py.samplers.render_job import RenderSettings, render
@@ -65,13 +66,15 @@ class TestWhichThereAre:
         pinhole, lens, far = (
             SimpleNamespace(lens=lens, clip=clip) for lens, clip in ((None, None), (1, None), (1, 9.0))
         )
-        assert kinds_of("pt", lens) == ("hit", "nee")
-        assert kinds_of("ppm", lens) == ("hit", "vm")
-        assert kinds_of("lt", lens) == ("hit", "lt", "lens")
-        assert kinds_of("vcm", lens) == KINDS
-        assert kinds_of("vcm", pinhole) == kinds_of("vcm", far) == ("hit", "nee", "vc", "lt", "vm")
+        assert kinds_of("pt", lens, ALL) == ("hit", "nee")
+        assert kinds_of("ppm", lens, ALL) == ("hit", "vm")
+        assert kinds_of("lt", lens, ALL) == ("hit", "lt", "lens")
+        assert kinds_of("vcm", lens, ALL) == KINDS
+        assert kinds_of("vcm", pinhole, ALL) == kinds_of("vcm", far, ALL) == ("hit", "nee", "vc", "lt", "vm")
         with pytest.raises(OptionError, match="reference"):
-            kinds_of("reference", pinhole)
+            kinds_of("reference", pinhole, ALL)
+        few = Samples(next_event=0, connections=0, light_image=0)
+        assert kinds_of("vcm", lens, few) == ("hit", "vm")
 
 
 class TestRows:

@@ -13,6 +13,7 @@ from ..transport.photon_density import PhotonDensity
 from ..transport.recording import TechniqueTables
 from ..transport.roulette import Limits
 from ..transport.sensing import Sensing
+from ..transport.shares import Chosen
 from ..transport.vertices import Pool
 from .path_tracing import Pass
 
@@ -56,6 +57,10 @@ class Method(NamedTuple):
     light_paths: float  # per pixel
     offset: float  # in [0, 1): which pixels get one more where `light_paths` is not whole
     hits_everything: bool  # hitting an emitter is a technique like the others; else only where no other can
+    shadow_rays: int | None  # per eye vertex; absent where it is one
+    chosen: Chosen  # light subpaths, by what is done with them
+    n_image_paths: float  # of them, those that the camera sees
+    n_photon_paths: float  # and those that are merged with
     density: PhotonDensity | None = None  # absent where weights take merges for independent samples
 
 

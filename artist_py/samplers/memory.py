@@ -4,7 +4,7 @@ import numpy as np
 
 from ..core.table import Table
 from ..errors import OptionError
-from ..integrators.methods import METHODS
+from ..integrators.methods import METHODS, subset_of
 from ..transport.photon_grid import photon_dtype
 from ..transport.splats import splat_dtype
 from ..transport.vertices import vertex_dtype
@@ -52,7 +52,7 @@ def memory_estimate(compiled, settings):
     light_paths = compiled.graph.render.merging.light_paths
     return {
         "film": pixels * (12 + 24 + 12 + (24 if "variance" in settings.aovs else 0) + 12 * bands),
-        "techniques": pixels * _bytes_of_techniques(compiled.graph.render, settings),
+        "techniques": pixels * _bytes_of_techniques(compiled, settings),
         "auxiliary outputs": pixels * 60 if set(settings.aovs) - {"variance"} else 0,
         "geometry": sum(array.nbytes for array in arrays) + (emitters.records.nbytes if emitters else 0),
         "acceleration structure": BYTES_PER_FACE * faces,
@@ -63,21 +63,26 @@ def memory_estimate(compiled, settings):
     }
 
 
-def _bytes_of_techniques(render, settings):
+def _bytes_of_techniques(compiled, settings):
     if not settings.techniques:
         return 0
-    return 3 * BYTES_PER_VALUE * len(techniques_of_render(render, settings.technique_length))
+    return 3 * BYTES_PER_VALUE * len(techniques_of_render(compiled, settings.technique_length))
+
+
+def _subset(render):
+    """The `Subset` of a bidirectional method, None for others."""
+    return subset_of(render.integrator, render.samples) if render.integrator in METHODS else None
 
 
 def _bytes_per_eye_path(compiled):
-    method = METHODS.get(compiled.graph.render.integrator)
+    method = _subset(compiled.graph.render)
     return RECORDS_PER_PATH * stored_vertex_dtype(compiled).itemsize if method and method.merge else 0
 
 
 def _bytes_per_light_path(compiled):
     """Stored vertices, their copies in the photon grid, and splats."""
     render = compiled.graph.render
-    method, lanes = METHODS.get(render.integrator), render.hero_count
+    method, lanes = _subset(render), render.hero_count
     if method is None:
         return 0
     size, photon = 40, photon_dtype(lanes, render.wavelengths == "rotate")

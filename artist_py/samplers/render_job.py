@@ -93,7 +93,7 @@ def sampler_for(compiled, film, settings, observer):
     recorder = None
     light_paths = light_paths_within(compiled, settings, observer.warning)
     if settings.techniques:
-        techniques = techniques_of_render(compiled.graph.render, settings.technique_length)
+        techniques = techniques_of_render(compiled, settings.technique_length)
         recorder = TechniqueRecorder(techniques, film.height, film.width)
     if compiled.graph.render.integrator == "reference":
         return ReferenceSampler(compiled, film, settings.threads)

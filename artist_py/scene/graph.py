@@ -37,6 +37,7 @@ FILTER_RADIUS = {"box": 0.5, "tent": 1.0, "gaussian": 1.5, "blackman-harris": 1.
 INTEGRATORS = ("pt", "lt", "bpt", "ppm", "bpm", "vcm", "reference")
 MERGES = ("ppm", "bpm", "vcm", "reference")  # those that merge paths, and care for each other's wavelengths
 ROTATES = ("lt", "bpt", "ppm", "bpm", "vcm")  # those that trace paths from lights
+ONLY_TECHNIQUE = {"lt": "light_image", "ppm": "merging", "bpm": "merging"}  # in [render.samples]
 LONGEST_STORED = 1000  # edges of subpaths whose vertices are stored
 # cd/m2 of a flat spectrum of radiance 1: 683.002 lm/W times the integral of ybar.
 WHITE_LUMINANCE = {"CIE 1931 2": 72983.4866019817, "CIE 1964 10": 79680.2951650147}
@@ -147,6 +148,24 @@ class Merging(Node):
 
 
 @node
+class Samples(Node):
+    """[render.samples]: how many samples of each technique are taken; 0 leaves it out."""
+
+    next_event: int | None = key(
+        Number(at_least=0, at_most=1024, whole=True), None
+    )  # shadow rays per eye vertex; default: 1
+    connections: float | None = key(
+        Number(at_least=0), None
+    )  # light paths that an eye path is connected to, on average; default: all of its pixel
+    light_image: float | None = key(
+        Number(at_least=0, at_most=1), None
+    )  # share of the light paths that the camera sees; default: all
+    merging: float | None = key(
+        Number(at_least=0, at_most=1), None
+    )  # share of the light paths that are photons; default: all
+
+
+@node
 class BruteForce(Node):
     """[render.reference]: the brute-force integrator "reference", for a few pixels."""
 
@@ -193,6 +212,7 @@ class Render(Node):
     )  # nm; default: 380 to 780, or from 300 where the scene needs it
     sampler: str = key(Choice(("sobol", "independent")), "sobol")
     heuristic: str = key(Choice(("balance", "power")), "balance")  # of bidirectional methods; power: beta = 2
+    samples: Samples = key(Table(Samples), Samples())
     merging: Merging = key(Table(Merging), Merging())
     reference: BruteForce = key(Table(BruteForce), BruteForce())
 
@@ -211,8 +231,17 @@ class Render(Node):
                 f"expected at most {LONGEST_STORED} with {self.integrator}, found {self.max_path_length}"
             )
             yield "max_path_length", message
+        yield from self._problems_of_samples()
         if self.wavelength_range is not None and self.wavelength_range[0] >= self.wavelength_range[1]:
             yield "wavelength_range", expected("first < last", self.wavelength_range)
+
+    def _problems_of_samples(self):
+        only, most = ONLY_TECHNIQUE.get(self.integrator), self.merging.light_paths
+        if only and getattr(self.samples, only) == 0:
+            yield f"samples.{only}", f"expected more than 0, since {self.integrator} has nothing else"
+        if self.integrator != "reference" and (self.samples.connections or 0) > most:
+            wanted = f"at most merging.light_paths = {show(most)}"
+            yield "samples.connections", expected(wanted, self.samples.connections)
 
 
 @node

@@ -9,7 +9,7 @@ from ..core.spectra import black
 from ..core.vector import Spectrum, dot
 from ..jit import function
 from .mis import Partial, bracket, weight_of_merge
-from .photon_density import counts_at
+from .photon_density import counts_around
 from .photon_grid import bucket_of, cell_of, is_in_pair
 from .recording import VM, record
 from .rotation import Rotation, is_rejected, throughput_in_line
@@ -45,7 +45,7 @@ def merge_at(scene, method, grid, merging, stored, survival, limits, tables, pla
     p = stored.vertex.surface.position
     i, j, k = _lower_cell(p.x, grid.cell), _lower_cell(p.y, grid.cell), _lower_cell(p.z, grid.cell)
     buckets = grid.starts.shape[0] - 1
-    counts = counts_at(method.density, method.counts, p)
+    counts = counts_around(method.density, method.counts, p)
     scale = 1.0 / (merging.radius * merging.radius)
     for corner in range(8):
         x, y, z = corner & 1, j + ((corner >> 1) & 1), k + (corner >> 2)

@@ -65,7 +65,7 @@ def photons_per_area(density, position):
 
 
 @function
-def counts_at(density, counts, position):
+def counts_around(density, counts, position):
     """`Counts` for the weights at a vertex: with a(x) for a, where there is a `PhotonDensity`."""
     if density is None:
         return counts

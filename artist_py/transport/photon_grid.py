@@ -9,10 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..bsdf.dispatch import is_mergeable
 from ..core.affine import load_vec3
 from ..core.table import Table
 from ..jit import function, kernel
 from .rotation import note_offset
+from .shares import is_chosen
 from .vertices import store3
 
 _U64 = np.uint64
@@ -62,24 +64,30 @@ def bucket_of(i, j, k, buckets):
 
 
 @kernel
-def count_photons(grid, records, paths, first, end):
-    """Count the photons of buckets [first, end) into `starts[1 + bucket]`; returns their number."""
+def count_photons(grid, records, paths, share, materials, first, end):
+    """Count the photons of buckets [first, end) into `starts[1 + bucket]`; returns their number.
+
+    `share` is the `Share` of subpaths that are merged with; `materials` the scene's, absent where all are merged at.
+    """
     buckets = grid.starts.shape[0] - 1
     for bucket in range(first, end):
         grid.starts[bucket + 1] = 0
     total = 0
     for index in range(paths.shape[0]):
         path = paths[index]
+        if not is_chosen(share, index):
+            continue
         for i in range(path.n_vertices):
-            bucket = _bucket_of_vertex(records[path.first_vertex + i], grid.cell, buckets)
-            if first <= bucket < end:
+            record = records[path.first_vertex + i]
+            bucket = _bucket_of_vertex(record, grid.cell, buckets)
+            if first <= bucket < end and _is_photon(materials, record):
                 grid.starts[bucket + 1] += 1
                 total += 1
     return total
 
 
 @kernel
-def place_photons(grid, records, paths, first, end, before, offsets):
+def place_photons(grid, records, paths, share, materials, first, end, before, offsets):
     """Turn the counts of buckets [first, end) into starts, and copy their photons; `before` lie in earlier buckets.
 
     While photons are placed `starts[b + 1]` is where the next one of b goes; in the end it is where b + 1 starts.
@@ -93,14 +101,23 @@ def place_photons(grid, records, paths, first, end, before, offsets):
         position += count
     for index in range(paths.shape[0]):
         path = paths[index]
+        if not is_chosen(share, index):
+            continue
         for i in range(path.n_vertices):
             record = records[path.first_vertex + i]
             bucket = _bucket_of_vertex(record, grid.cell, buckets)
-            if first <= bucket < end:
+            if first <= bucket < end and _is_photon(materials, record):
                 row = grid.starts[bucket + 1]
                 grid.starts[bucket + 1] = row + 1
                 _copy(record, grid.photons[row])
                 note_offset(offsets, path, grid.photons[row])
+
+
+@function
+def _is_photon(materials, record):
+    if materials is None:
+        return True
+    return is_mergeable(True, materials[record.material])
 
 
 @function

@@ -58,8 +58,9 @@ SCENES = {
         "camera": {
             **look([0, -0.9, 0.3], [0, 1, -0.6], 70),
             "type": "thin-lens",
-            "aperture_radius": 0.05,
+            "aperture_radius": 0.3,  # large enough for light to hit it
             "focus_distance": 1.0,
+            "blades": 5,
         },
     },
 }

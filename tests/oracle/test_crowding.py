@@ -17,7 +17,7 @@ from artist_py.core.table import Table
 from artist_py.integrators.reference_densities import technique_densities, weight_of
 from artist_py.transport import photon_density
 from artist_py.transport.mis import Counts
-from artist_py.transport.photon_density import PhotonDensity, counts_at
+from artist_py.transport.photon_density import PhotonDensity, counts_around
 
 TOLERANCE = 1e-9
 VM = 0.4
@@ -56,7 +56,7 @@ def brute_force(setup, wavelengths, path):
     found = technique_densities(setup.scene, setup.camera, method.counts, method.n_pixels, wavelengths, path)
     for kind, i in found:
         if kind == "vm":
-            local = counts_at(method.density, method.counts, path.nodes[i].surface.position)
+            local = counts_around(method.density, method.counts, path.nodes[i].surface.position)
             found[kind, i] *= local.vm_area / method.counts.vm_area
     return found
 

@@ -9,7 +9,13 @@ from artist_py.core.table import Table
 from artist_py.core.vector import vec3
 from artist_py.transport import photon_density
 from artist_py.transport.mis import Counts
-from artist_py.transport.photon_density import PhotonDensity, counts_at, deposit, photons_per_area, scale_of
+from artist_py.transport.photon_density import (
+    PhotonDensity,
+    counts_around,
+    deposit,
+    photons_per_area,
+    scale_of,
+)
 
 CELL, COUNT = 0.05, 8000  # over the unit square: 20 per cell
 COUNTS = Counts(1.0, 1.0, 1.0, 1.0, 3.0, None)
@@ -49,8 +55,8 @@ def test_merges_count_less_where_photons_crowd():
     """a(x) = min(a, 1 / q)."""
     density = PhotonDensity(Table(np.full(16, 10, np.int64)), CELL, 0.1)
     crowded, sparse = (
-        counts_at(density._replace(scale=scale), COUNTS, vec3(0, 0, 0)) for scale in (1.0, 0.01)
+        counts_around(density._replace(scale=scale), COUNTS, vec3(0, 0, 0)) for scale in (1.0, 0.01)
     )
     assert crowded == COUNTS._replace(vm_area=pytest.approx(0.1))
     assert sparse == COUNTS
-    assert counts_at(None, COUNTS, vec3(0, 0, 0)) is COUNTS
+    assert counts_around(None, COUNTS, vec3(0, 0, 0)) is COUNTS

@@ -28,8 +28,11 @@ FULL_SIZE = 512  # of the published figures; the references are half as large
 FOLDER = Path(__file__).parent
 
 
-def rgb_scene(name, integrator, size):
-    """The compiled box, its four bins of wavelength turned into the channels R, G, B and nothing."""
+def rgb_scene(name, integrator, size, **more):
+    """The compiled box, its four bins of wavelength turned into the channels R, G, B and nothing.
+
+    `more` overrides keys of the scene file, with "__" for each dot.
+    """
     compiled = artist_py.load_scene(
         FOLDER.parent / "scenes" / name,
         {
@@ -37,6 +40,7 @@ def rgb_scene(name, integrator, size):
             "render.wavelengths": "shared",
             "render.wavelength_range": [FIRST_NM, FIRST_NM + 4],
             "film.resolution": [size, size],
+            **{key.replace("__", "."): value for key, value in more.items()},
         },
     )
     spectra, materials = compiled.spectra, compiled.scene.materials.array

@@ -12,7 +12,13 @@ if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0":
         "furnace",
         "agreement",
         "compiling/test_cache.py",
+        "evidence/test_ablation.py",
+        "evidence/test_convergence.py",
+        "evidence/test_image_noise.py",
+        "evidence/test_reference.py",
+        "evidence/test_snapshots.py",
         "compiling/test_left_out.py",
         "statistics/test_emitters.py",
+        "unit/cli/test_converge.py",
         "unit/test_sampler.py",
     ]

@@ -125,7 +125,13 @@ def command(**options):  # click's way to pass options, by the names they have a
     with stop_signals() as stop:
         if options["ablate"]:
             return _ablate(options, entries, folder, observer, stop)
-        run = _run(options, entries, folder, observer, stop)
+        try:
+            run = _run(options, entries, folder, observer, stop)
+        except OptionError as error:
+            if not stop.is_set():
+                raise
+            observer.warning(str(error))
+            return INTERRUPTED
     _report(folder, run, options, observer)
     return INTERRUPTED if run.is_interrupted else 0
 

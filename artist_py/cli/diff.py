@@ -63,7 +63,7 @@ def _check_png(output):
 
 
 def _print(pair, result):
-    for note in pair.notes:
+    for note in (*pair.notes, result.note) if result.note else pair.notes:
         click.echo(f"warning: {note}", err=True)
     x, y = result.worst
     click.echo(f"{result.metric} {result.value:.6g}; worst pixel x {x}, y {y}: {result.worst_value:.6g}")

@@ -16,6 +16,10 @@ MAPS = {
 }
 METRICS = (*MAPS, "flip", "de2000", "z")
 FALSE_ALARM = 1e-3
+NORMAL_NOTE = (
+    "the images are not of one integrator with equally many iterations, and their values are taken as normal: with few "
+    "iterations, false alarms are more frequent than stated"
+)
 
 
 class Difference(NamedTuple):
@@ -27,6 +31,7 @@ class Difference(NamedTuple):
     map: Any  # (h, w): error of each pixel, |z| for z; zero where a pixel is not finite
     worst: tuple  # x, y of the largest in the map, pixels of the array
     n_bad: int  # pixels that are not finite
+    note: str = ""  # what the value rests on, for the user
 
     @property
     def worst_value(self):
@@ -90,12 +95,14 @@ def _z(pair):
     bad = pair.bad | ~(np.isfinite(arrays[1]).all(axis=2) & np.isfinite(arrays[3]).all(axis=2))
     for array in arrays:
         array[bad] = 0.0
-    test = z_test(*arrays, tail=_tail(a, b))
+    tail = _tail(a, b)
+    test = z_test(*arrays, tail=tail)
     parts = {
         "p": test.p,
         **{f"largest |z| of {name}": np.abs(test.z[..., i]).max() for i, name in enumerate("RGB")},
     }
-    return _result(pair._replace(bad=bad), "z", test.p, parts, np.abs(test.z).max(axis=2))
+    result = _result(pair._replace(bad=bad), "z", test.p, parts, np.abs(test.z).max(axis=2))
+    return result._replace(note=NORMAL_NOTE if tail is normal_tail else "")
 
 
 def _tail(a, b):

@@ -39,6 +39,9 @@ class Row(NamedTuple):
     noise: float | None  # relMSE by the film's own estimate, without reference
     is_below_reference: bool
     rejected: int
+    mean_ratio: float | None = (
+        None  # mean of the image over that of the reference: less than 1 where light is missed
+    )
 
     def along(self, axis):
         """Its place on the axis of the plots."""
@@ -150,6 +153,7 @@ def _row(snapshot, label, repeat, seed, reference):
         noise=snapshot.noise,
         is_below_reference=is_below(error, reference),
         rejected=snapshot.film.rejected_count,
+        mean_ratio=float(np.mean(rgb)) / mean if (mean := float(np.mean(reference.rgb))) > 0 else None,
     )
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from artist_py.errors import OptionError
 from artist_py.evidence.files import ABLATION_KIND, read_json
-from artist_py.evidence.statistics import summary
+from artist_py.evidence.statistics import clock_of, summary
 from artist_py.evidence.words import figures
 
 SAME = ("threads", "processor", "processors")  # what seconds depend on besides the renderer
@@ -84,7 +84,7 @@ def join(runs, metric="relmse"):
         for cell in summary(run):
             place = _scene_of(run), cell["entry"], cell["mark"]
             cells = found.setdefault(place, [None] * len(runs))
-            cells[number] = _cell(cell, metric)
+            cells[number] = _cell(cell, metric, clock_of(run.axis))
     return [Line(scene, entry, mark, tuple(cells)) for (scene, entry, mark), cells in found.items()]
 
 
@@ -92,14 +92,14 @@ def _scene_of(run):
     return Path(run.scene).stem
 
 
-def _cell(cell, metric):
+def _cell(cell, metric, clock):
     own = cell["own_relmse"] if metric == "relmse" else cell["smape"]
     return Cell(
         cell[metric],
         cell[f"{metric}_low"],
         cell[f"{metric}_high"],
         own,
-        cell["iterations"] / max(cell["wall_seconds"], 1e-12),
+        cell["iterations"] / max(cell[clock], 1e-12),
         cell["is_below_reference"],
     )
 

@@ -19,6 +19,7 @@ from artist_py.evidence.words import (
     band_text,
     duration,
     figures,
+    mean_text,
     memory,
     notes,
     slope_text,
@@ -202,14 +203,14 @@ def _key(convergence, label):
 def _last_table(convergence, pictures):
     cells, fits = summary(convergence), slopes(convergence)
     base = convergence.entries[0].label
-    header = ["", "seconds", "iterations", "relMSE", "sMAPE", "FLIP", "slope of relMSE", f"speed against {base}",
-              "Mrays/s", "memory"]  # fmt: skip
+    header = ["", "seconds", "iterations", "relMSE", "sMAPE", "FLIP", "mean", "slope of relMSE",
+              f"speed against {base}", "Mrays/s", "memory"]  # fmt: skip
     lines = []
     for entry in convergence.entries:
         own = [cell for cell in cells if cell["entry"] == entry.label]
         if own:
             cell, flip = own[-1], pictures.flip.get(entry.label)
-            ratio = speed_up(cells, entry.label, base)
+            ratio = speed_up(cells, entry.label, base, convergence.axis)
             lines.append([
                 _key(convergence, entry.label),
                 figures(cell["wall_seconds"]),
@@ -217,6 +218,7 @@ def _last_table(convergence, pictures):
                 _error(cell, "relmse"),
                 _error(cell, "smape"),
                 "" if flip is None else figures(flip),
+                _mean(cell),
                 escape(slope_text(fits[entry.label]["relmse"])),
                 "" if ratio is None else f"{figures(ratio)} x",
                 figures(cell["rays"] / cell["wall_seconds"] / 1e6),
@@ -230,6 +232,13 @@ def _error(cell, metric):
     text = f"{figures(cell[metric])}{star}"
     if cell["repeats"] > 1:
         text += f" <small>{figures(cell[f'{metric}_low'])} to {figures(cell[f'{metric}_high'])}</small>"
+    return text
+
+
+def _mean(cell):
+    text = mean_text(cell)
+    if text and cell["repeats"] > 1:
+        text += " <small>{:.4f} to {:.4f}</small>".format(*cell["mean_ratio"][1:])
     return text
 
 

@@ -25,6 +25,7 @@ from artist_py.film.reading import read_image
 from artist_py.jit import cache_root, source_digest
 from artist_py.samplers.render_job import RenderSettings
 from artist_py.samplers.snapshots import snapshots
+from artist_py.scene.identity import settings
 
 BATCHES = 16
 FEWEST_BATCHES = 4
@@ -108,7 +109,7 @@ def make_reference(compile_as, integrators, seconds, *, threads, is_fresh=False,
 
 def render_batches(compiled, batches, seconds, threads, observer=None, stop=None):
     """Add batches until they have taken so many wall seconds in all; those of one reference are equally long."""
-    settings = RenderSettings(threads=threads)
+    limits = RenderSettings(threads=threads)
     while not (stop is not None and stop.is_set()):
         if batches.seconds >= seconds and batches.moments.count >= FEWEST_BATCHES:
             return
@@ -116,7 +117,7 @@ def render_batches(compiled, batches, seconds, threads, observer=None, stop=None
             ([batches.iterations], "iterations") if batches.iterations else ([seconds / BATCHES], "wall")
         )
         seeded = with_seed(compiled, batch_seed(batches.integrator, batches.moments.count))
-        for snapshot in snapshots(seeded, settings, marks, axis, observer, stop):
+        for snapshot in snapshots(seeded, limits, marks, axis, observer, stop):
             batches.iterations = snapshot.iterations
             batches.add(snapshot.film.rgb)
             batches.seconds += snapshot.wall_seconds
@@ -180,8 +181,11 @@ def joined(made):
 
 
 def cached_path(compiled, integrator):
-    """Where the reference of a picture by an integrator is kept."""
-    return cache_root() / "references" / f"{picture_hash(compiled)[:32]}-{integrator}.exr"
+    """Where the reference of a picture by an integrator is kept; one with bias has its settings in the name, too."""
+    key = picture_hash(compiled)
+    if integrator not in UNBIASED:
+        key = hashlib.sha256(f"{key} {settings(compiled.graph)['render']['merging']}".encode()).hexdigest()
+    return cache_root() / "references" / f"{key[:32]}-{integrator}.exr"
 
 
 def save_batches(path, batches, compiled):

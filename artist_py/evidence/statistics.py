@@ -96,10 +96,16 @@ def _cell(label, mark, rows):
         "smape_low": shape.low,
         "smape_high": shape.high,
         "is_below_reference": any(row.is_below_reference for row in rows),
+        "mean_ratio": _interval_of([row.mean_ratio for row in rows]),
         "rays": median("rays") + median("shadow_rays"),
         "peak_memory_bytes": max(row.peak_memory_bytes for row in rows),
         "render_memory_bytes": max(row.render_memory_bytes for row in rows),
     }
+
+
+def _interval_of(values):
+    """`[median, low, high]`; None where a value is not known."""
+    return None if None in values else list(median_interval(values)[:3])
 
 
 def slopes(convergence):
@@ -113,11 +119,16 @@ def slopes(convergence):
     }
 
 
-def speed_up(cells, label, base):
+def clock_of(axis):
+    """Name of the seconds that rates refer to."""
+    return "cpu_seconds" if axis == "cpu" else "wall_seconds"
+
+
+def speed_up(cells, label, base, axis="wall"):
     """How many times less time entry `label` needs than `base` for the same error, at their last common mark.
 
-    Where errors fall as 1 / seconds, that is the ratio of error times seconds. None where one is below the reference
-    or has no rows.
+    The clock is that of `axis`, of the wall for iterations. Where errors fall as 1 / seconds, that is the ratio of
+    error times seconds. None where one is below the reference or has no rows.
     """
     marks = {cell["mark"] for cell in cells if cell["entry"] == label}
     marks &= {cell["mark"] for cell in cells if cell["entry"] == base}
@@ -129,5 +140,5 @@ def speed_up(cells, label, base):
     )
     if mine["is_below_reference"] or theirs["is_below_reference"]:
         return None
-    costs = [cell["own_relmse"] * cell["wall_seconds"] for cell in (theirs, mine)]
+    costs = [cell["own_relmse"] * cell[clock_of(axis)] for cell in (theirs, mine)]
     return costs[0] / costs[1] if math.isfinite(costs[0]) and costs[1] > 0 else None

@@ -1,7 +1,7 @@
 """Tables of texts: a header and lines."""
 
 from artist_py.evidence.statistics import slopes, speed_up, summary
-from artist_py.evidence.words import figures, slope_text
+from artist_py.evidence.words import figures, mean_text, slope_text
 
 
 def convergence_table(convergence):
@@ -13,6 +13,7 @@ def convergence_table(convergence):
         "relMSE after",
         *(f"{mark:g}{unit}" for mark in marks),
         "sMAPE",
+        "mean",
         "slope",
         f"speed against {base}",
     ]
@@ -20,12 +21,13 @@ def convergence_table(convergence):
     for entry in convergence.entries:
         own = {cell["mark"]: cell for cell in cells if cell["entry"] == entry.label}
         last = own[max(own)] if own else None
-        ratio = speed_up(cells, entry.label, base)
+        ratio = speed_up(cells, entry.label, base, convergence.axis)
         lines.append(
             [
                 entry.label,
                 *(_error(own.get(mark), "relmse") for mark in marks),
                 _error(last, "smape"),
+                mean_text(last),
                 slope_text(fits[entry.label]["relmse"]),
                 "" if ratio is None else f"{figures(ratio)} x",
             ]

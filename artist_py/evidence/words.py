@@ -41,6 +41,12 @@ def slope_text(interval):
     return f"{interval.median:.2f} ({interval.low:.2f} to {interval.high:.2f})"
 
 
+def mean_text(cell):
+    """The image's mean over the reference's, of an entry's last look, in a table."""
+    ratio = cell and cell.get("mean_ratio")
+    return f"{ratio[0]:.4f}" if ratio else ""
+
+
 def subtitle(convergence):
     """What was rendered, and where."""
     about = convergence.about

@@ -211,6 +211,9 @@ def leave_surface(surface, direction):
 
 @function
 def offset_position(position, normal, extent, direction):
-    """`position` moved to the side of `normal` that `direction` points to, by the rounding error of its place."""
+    """`position` moved to the side of `normal` that `direction` points to, by the rounding error of its place.
+
+    At the far end of a ray `extent` is the larger one of both ends: rounding moves the ray's end by that of its start.
+    """
     error = ERROR_SCALE * extent
     return position + normal * (error if dot(normal, direction) > 0.0 else -error)

@@ -172,7 +172,8 @@ def next_event(reference, eye, index, stream, dimension):
     if not is_emitting_towards(emitter, point.normal, edge.direction):
         return nothing
     there = scattering(reference, eye, index, -edge.direction, None)
-    end = offset_position(point.position, point.normal, point.extent, edge.direction)
+    extent = max(point.extent, node.surface.extent)
+    end = offset_position(point.position, point.normal, extent, edge.direction)
     if there.is_black or is_blocked(scene, node.surface, -edge.direction, end):
         return nothing
     path = joined([light], [], edge, *up_to(eye, index))

@@ -104,7 +104,7 @@ def _to_light(emitters, scene, counts, vertex, partial, survival, wavelengths, u
         return nothing
     wi = towards * (1.0 / math.sqrt(dot(towards, towards)))
     there = scattering_towards(scene, vertex, wi, wavelengths, survival, None)
-    end = offset_position(point.position, point.normal, point.extent, -wi)
+    end = offset_position(point.position, point.normal, max(point.extent, vertex.surface.extent), -wi)
     if there.is_black:
         return nothing
     if is_blocked(scene, vertex.surface, wi, end):
@@ -141,7 +141,9 @@ def connect_vertices(
     there = scattering_towards(scene, light.vertex, -wi, wavelengths, light_survival, True)
     if there.is_black:
         return nothing
-    if is_blocked(scene, eye.surface, wi, leave_surface(light.vertex.surface, -wi)):
+    far = light.vertex.surface
+    extent = max(far.extent, eye.surface.extent)
+    if is_blocked(scene, eye.surface, wi, offset_position(far.position, far.normal, extent, -wi)):
         return Connected(black(wavelengths), 1, 0.0)
     weight = weight_of_connection(
         counts,

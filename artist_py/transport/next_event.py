@@ -62,7 +62,7 @@ def _connect(emitters, scene, vertex, wavelengths, stream, pair, u_select):
     if pdf_scatter == 0.0 or not is_on_side(scene.needs.smooth_triangles, vertex.surface, wi_world, wi):
         return Connection(black(wavelengths), 0, 0.0)
     start = leave_surface(vertex.surface, wi_world)
-    end = offset_position(point.position, point.normal, point.extent, -wi_world)
+    end = offset_position(point.position, point.normal, max(point.extent, vertex.surface.extent), -wi_world)
     if is_occluded(scene.geometry.embree, start, end - start, 1.0):
         return Connection(black(wavelengths), 1, 0.0)
     f = evaluate_bsdf(scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, vertex.wo, wi)

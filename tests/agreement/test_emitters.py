@@ -111,6 +111,16 @@ def test_box():
     assert_irradiance(lit_by([emitter]), expected)
 
 
+@pytest.mark.parametrize("radius", [1e-2, 1e-4])
+def test_small_sphere_in_the_middle_of_the_scene(radius):
+    """There its own coordinates are small; rays to it are as inexact as where they come from."""
+    lamp = shape("sphere", center=[0, 0, 1], radius=radius, emission=EMISSION / radius**2)
+    opposite = shape("sphere", center=[0, -2, 3], radius=0.1, emission=0)
+    compiled = lit_by([lamp, opposite])
+    assert np.allclose(compiled.space.centre, [0, 0, 1], atol=1e-6)
+    assert_irradiance(compiled, math.pi * EMISSION)
+
+
 @pytest.mark.parametrize("sides", ["front", "both"])
 @pytest.mark.parametrize("reverse", [False, True])
 def test_sides(sides, reverse):

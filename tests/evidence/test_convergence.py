@@ -47,6 +47,7 @@ def test_rows(run):
     assert row.paths == 8 * 120
     assert row.rays > row.paths
     assert row.rejected == 0
+    assert row.mean_ratio == pytest.approx(film.rgb.mean() / run.reference.rgb.mean())
 
 
 def test_errors_fall(run):

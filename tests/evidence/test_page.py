@@ -34,7 +34,7 @@ def made_up(names=NAMES, repeats=3):
                 below = number == 0 and mark == MARKS[-1]
                 rows.append(
                     Row(name, repeat, repeat, mark, mark, 2 * mark, int(10 * mark), 1000, 50_000, 30_000, 2**28, 2**24,
-                        error, error - 0.01, error**0.5, 0.9 * error, below, 0)
+                        error, error - 0.01, error**0.5, 0.9 * error, below, 0, 0.99)
                 )  # fmt: skip
                 images[name, mark] = np.tile(np.float32(COLORS[name]), (*SIZE, 1)) * np.float32(mark / 4)
     about = {
@@ -166,7 +166,7 @@ class TestContent:
     def test_table(self):
         """The same in the terminal."""
         header, lines = convergence_table(made_up())
-        assert header == ["relMSE after", "1 s", "2 s", "4 s", "sMAPE", "slope", "speed against pt"]
+        assert header == ["relMSE after", "1 s", "2 s", "4 s", "sMAPE", "mean", "slope", "speed against pt"]
         assert lines[0][:4] == ["pt", "0.11", "0.055", "0.0275 *"]
         assert lines[1][-1] == ""  # pt is below the reference there
         assert lines[1][-2].startswith("-1.1")

@@ -151,6 +151,18 @@ class TestCache:
             np.testing.assert_allclose(grown.moments.mean, whole.moments.mean, rtol=1e-6)
             np.testing.assert_allclose(grown.moments.variance, whole.moments.variance, rtol=1e-3, atol=1e-12)
 
+    def test_what_names_them(self, tmp_path, room):
+        """The integrator; where it has bias, what that depends on."""
+        path = write_room(
+            tmp_path, "other.toml", ("max_path_length = 4", "max_path_length = 4\nmerging.alpha = 0.9")
+        )
+        for integrator, is_same in (("pt", True), ("bpt", True), ("vcm", False)):
+            mine, other = (
+                cached_path(_compile(each, integrator), integrator) for each in (tmp_path / "room.toml", path)
+            )
+            assert (mine == other) == is_same
+        assert cached_path(room("pt"), "pt") != cached_path(room("bpt"), "bpt")
+
     def test_fresh(self, room):
         """On demand nothing is taken from the cache."""
         made = make_reference(room, ["pt"], 0.03, threads=1)

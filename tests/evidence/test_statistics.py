@@ -85,6 +85,7 @@ class TestSummary:
         assert (first["relmse"], first["relmse_low"], first["relmse_high"]) == (0.2, 0.1, 0.3)
         assert first["coverage"] == 0.75
         assert first["rays"] == 80
+        assert first["mean_ratio"] is None
         assert (first["is_below_reference"], second["is_below_reference"]) == (False, True)
 
     def test_speed_up(self):

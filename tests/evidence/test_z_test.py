@@ -19,7 +19,7 @@ from artist_py.compare.z_test import (
 )
 
 SHAPE = 8, 8, 3
-TRIALS = 2000
+TRIALS = 1000
 ALARM = 0.05
 
 

@@ -3,6 +3,7 @@
 from artist_py.stress.case import Case, Radiance
 from artist_py.stress.scenes import furnace, look
 
+FLAT = "at 89.99 degrees no photon falls into pixels so narrow"
 NARROW = "no photon ever falls into the eye's narrow view"
 
 
@@ -17,6 +18,7 @@ CASES = (
         "The narrowest view.",
         seen(0.01),
         Radiance(1),
+        precision=0.03,
         left_out={"lt": NARROW},
     ),
     Case("field-of-view-179", "The widest.", seen(179.0), Radiance(1)),
@@ -36,8 +38,15 @@ CASES = (
         "A column of ten thousand pixels, whose ends are seen at 89.99 degrees.",
         seen(resolution=[1, 10_000]),
         Radiance(1),
+        left_out={"lt": FLAT},
     ),
-    Case("pixels-10000x1", "A row of them.", seen(resolution=[10_000, 1]), Radiance(1)),
+    Case(
+        "pixels-10000x1",
+        "A row of them.",
+        seen(resolution=[10_000, 1]),
+        Radiance(1),
+        left_out={"lt": FLAT},
+    ),
     Case(
         "crop-1x1",
         "One pixel of many.",

@@ -11,12 +11,12 @@ EDGES = {
 }
 
 
-def strewn(material, **more):
+def strewn(material, radius=1e-3, **more):
     """Rubble of a lossless material in a furnace."""
     return furnace(
         [shape("mesh", material, file="rubble.ply", smooth=False)],
         look([0.3, -0.8, 0.1], [-0.1, 0.6, 0.1]),
-        render={"max_path_length": 200, "merging": {"radius": 1e-3, "light_paths": 4}},
+        render={"max_path_length": 200, "merging": {"radius": radius, "light_paths": 4}},
         **more,
     )
 
@@ -56,7 +56,7 @@ CASES = (
     Case(
         "mirror-rubble",
         "All of that as mirrors.",
-        strewn("mirror"),
+        strewn("mirror", 0.05),
         Radiance(1),
         files=rubble(*RUBBLE),
     ),

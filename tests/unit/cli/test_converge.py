@@ -2,13 +2,14 @@
 
 import json
 import os
+import signal
 import sys
 from pathlib import Path
 
 import pytest
 
 from artist_py.cli.main import main
-from artist_py.evidence import reference
+from artist_py.evidence import ablation, reference
 from artist_py.film.reading import read_image
 
 SCENE = """
@@ -83,6 +84,22 @@ def test_without_matplotlib(here, monkeypatch, capsys):
     assert "warning: plots: matplotlib is not installed" in capsys.readouterr().err
     assert Path("out/convergence.json").exists()
     assert not Path("out/plot.png").exists()
+
+
+def test_ablate(here, monkeypatch, capsys):
+    """A lens forced in, by iterations that take turns; no reference is made for it."""
+    monkeypatch.setattr(ablation, "FEATURES", ("lens",))
+    assert converge("--ablate", "--skip-compile-times", "--integrators", "pt") == 0
+    assert "forced in" in capsys.readouterr().out
+    assert {"ablation.csv", "ablation.json"} < set(os.listdir("out"))
+    assert not Path("out/reference.exr").exists()
+
+
+def test_interrupted(here, monkeypatch, capsys):
+    """A signal while the reference is made: 130, and nothing is made of too little."""
+    monkeypatch.setattr(reference, "render_batches", lambda *_: os.kill(os.getpid(), signal.SIGINT))
+    assert converge("--integrators", "pt") == 130
+    assert "the reference by bpt was interrupted" in capsys.readouterr().err
 
 
 def test_given_reference(here):

@@ -68,7 +68,9 @@ class TestValues:
     def test_z(self, images, capsys):
         """Noise is no difference; a value 10 standard errors off is, by default at 0.001."""
         assert main(["diff", "a.exr", "b.exr", "--metric", "z"]) == 0
-        assert "may show the same" in capsys.readouterr().out
+        out, err = capsys.readouterr()
+        assert "may show the same" in out
+        assert "values are taken as normal" in err
         image = read_image("b.exr").rgb.copy()
         image[4, 7, 2] += 10 * 0.0142
         write("c.exr", image, variance=np.full(SHAPE, 1e-4))
@@ -84,6 +86,7 @@ class TestValues:
             for name, rgb in (("c", np.ones(SHAPE)), ("d", image)):
                 write(f"{name}.exr", rgb, metadata, variance=np.full(SHAPE, 0.5e-4))
             assert main(["diff", "c.exr", "d.exr", "--metric", "z"]) == code
+            assert ("taken as normal" in capsys.readouterr().err) == (metadata is None)
 
     def test_quiet(self, images, capsys):
         """Only the exit code."""

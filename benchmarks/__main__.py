@@ -7,7 +7,17 @@ import os
 from .summary import summary
 from .tables import rewrite_readme
 
-BENCHMARKS = ("speed", "luxcore", "embree_share", "start_up", "memory", "threads", "triangles", "samplers")
+BENCHMARKS = (
+    "speed",
+    "luxcore",
+    "embree_share",
+    "start_up",
+    "memory",
+    "threads",
+    "triangles",
+    "samplers",
+    "correlation",
+)
 
 
 def main():

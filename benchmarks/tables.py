@@ -209,4 +209,26 @@ def boxes():
     return table("Reference boxes, 512 x 512", results, header, rows)
 
 
-WRITERS = (speed, luxcore, boxes, embree_share, start_up, memory, threads, triangles, samplers)
+def correlation():
+    """Noise at equal time."""
+    if not (results := load("correlation")):
+        return None
+    rows = [
+        (
+            scene,
+            f"{1e3 * figures['none']['relmse']:.2f} / {1e3 * figures['vcm+']['relmse']:.2f}",
+            f"{figures['none']['cpu_seconds']:.1f} / {figures['vcm+']['cpu_seconds']:.1f}",
+            f"{figures['none_over_vcm+']:.2f} +- {figures['standard_error']:.2f}",
+        )
+        for scene, figures in results["scenes"].items()
+    ]
+    header = (
+        "scene",
+        f"1000 relMSE, {results['iterations']} iterations, none / vcm+",
+        "CPU s",
+        "relMSE x CPU s, none over vcm+",
+    )
+    return table("Weights that know of shared photons", results, header, rows)
+
+
+WRITERS = (speed, luxcore, boxes, embree_share, start_up, memory, threads, triangles, samplers, correlation)

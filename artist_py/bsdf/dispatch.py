@@ -254,6 +254,14 @@ def is_delta_bsdf(material):
 
 
 @function
+def is_mergeable(sharp, material):
+    """Whether light subpaths may be merged at a material that has a density; `sharp` is `needs.sharp` (theory 4.6)."""
+    if sharp is None:
+        return True
+    return material.is_sharp == 0
+
+
+@function
 def is_transmissive(material):
     """Whether light can go through; the kinds are numbered so that these stand together."""
     return DIELECTRIC <= material.kind <= PASS_THROUGH

@@ -1,4 +1,4 @@
-"""Where a camera ray starts: at the pinhole, or on a thin lens with a round or bladed aperture."""
+"""Where a camera ray starts: at the pinhole, or on a thin lens with a round or bladed aperture; and what meets it."""
 
 import math
 
@@ -18,6 +18,28 @@ def sample_aperture(lens, u, v):
     angle1 = lens.rotation + 2.0 * math.pi * blade / lens.blades
     angle2 = lens.rotation + 2.0 * math.pi * (blade + 1) / lens.blades
     return b1 * math.cos(angle1) + b2 * math.cos(angle2), b1 * math.sin(angle1) + b2 * math.sin(angle2)
+
+
+@function
+def aperture_area(lens):
+    """Area of the aperture, render-space units squared."""
+    if lens.blades == 0:
+        return math.pi * lens.radius * lens.radius
+    return 0.5 * lens.blades * math.sin(2.0 * math.pi / lens.blades) * lens.radius * lens.radius
+
+
+@function
+def is_in_aperture(lens, x, y):
+    """Whether the point (x, y), in units of the lens radius, lies in the aperture."""
+    if x * x + y * y > 1.0:
+        return False
+    if lens.blades == 0:
+        return True
+    # The polygon is its inscribed circle and what the blades leave beyond it: the distance along the nearest blade's
+    # normal, which stands half-way between two corners.
+    half = math.pi / lens.blades
+    angle = (math.atan2(y, x) - lens.rotation) % (2.0 * half)
+    return math.sqrt(x * x + y * y) * math.cos(angle - half) <= math.cos(half)
 
 
 @function

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from ..core.vector import Vec3, dot
 from ..jit import function
-from .lens import sample_aperture
+from .lens import aperture_area, is_in_aperture, sample_aperture
 
 
 class SensorPoint(NamedTuple):
@@ -21,6 +21,7 @@ class SensorPoint(NamedTuple):
     film_y: float
     pdf_solid_angle: float
     importance: float
+    lens_area: float  # times the cosine at the lens, render-space units^2: the reciprocal of the density; 0: a pinhole
 
 
 @function
@@ -30,13 +31,67 @@ def connect_to_lens(camera, n_pixels, point, u, v):
     towards = lens_point - point
     depth = -dot(towards, camera.forward)
     if depth <= 0.0:
-        return SensorPoint(lens_point, towards, 0.0, 0.0, 0.0, 0.0)
+        return SensorPoint(lens_point, towards, 0.0, 0.0, 0.0, 0.0, 0.0)
     film = _film_direction(camera.lens, camera, lens_point, towards * (-1.0 / depth))
     x, y = film_position(camera, film)
     cos_theta = depth / math.sqrt(dot(towards, towards))
-    pixel_area = math.sqrt(dot(camera.right, camera.right) * dot(camera.down, camera.down))
-    density = 1.0 / (pixel_area * cos_theta * cos_theta * cos_theta)
-    return SensorPoint(lens_point, towards, x, y, density / n_pixels, density)
+    density = 1.0 / (_pixel_area(camera) * cos_theta * cos_theta * cos_theta)
+    area = cos_theta * _lens_area(camera.lens)
+    return SensorPoint(lens_point, towards, x, y, density / n_pixels, density, area)
+
+
+class LensHit(NamedTuple):
+    """Where light has met the lens; `t` is negative where it has not."""
+
+    t: float  # along the ray
+    film_x: float  # pixels
+    film_y: float
+    importance: float  # the value of one pixel per flux: W_e of (1.23)
+    cos_theta: float
+    area: float  # of the lens, render-space units^2
+
+
+@function
+def hit_lens(camera, origin, direction):
+    """The `LensHit` of light along a ray of unit direction, which only hits the front of the lens; not for pinholes.
+
+    The film point is that whose image the focus plane has where the ray comes from (theory 1.6).
+    """
+    cos_theta = -dot(direction, camera.forward)
+    t = -1.0
+    if cos_theta > 0.0:
+        t = dot(origin - camera.position, camera.forward) / cos_theta
+    if t > 0.0:
+        point = origin + direction * t
+        offset = (point - camera.position) * (1.0 / camera.lens.radius)
+        x = dot(offset, camera.right) / math.sqrt(dot(camera.right, camera.right))
+        y = dot(offset, camera.down) / math.sqrt(dot(camera.down, camera.down))
+        if is_in_aperture(camera.lens, x, y):
+            film = _film_direction(camera.lens, camera, point, direction * (-1.0 / cos_theta))
+            film_x, film_y = film_position(camera, film)
+            area, pixel = aperture_area(camera.lens), _pixel_area(camera)
+            importance = 1.0 / (pixel * area * cos_theta * cos_theta * cos_theta * cos_theta)
+            return LensHit(t, film_x, film_y, importance, cos_theta, area)
+    return LensHit(-1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@function
+def _pixel_area(camera):
+    """Area of a pixel at distance 1 along the optical axis."""
+    return math.sqrt(dot(camera.right, camera.right) * dot(camera.down, camera.down))
+
+
+@function
+def _lens_area(lens):
+    if lens is None:
+        return 0.0
+    return aperture_area(lens)
+
+
+@function
+def projected_lens_area(camera, direction):
+    """Area of the lens as it is seen along the unit `direction` into the scene, render-space units^2; 0: a pinhole."""
+    return dot(direction, camera.forward) * _lens_area(camera.lens)
 
 
 @function
@@ -51,8 +106,7 @@ def film_position(camera, direction):
 def pdf_camera_direction(camera, n_pixels, direction):
     """Density of camera rays into a unit direction, sr^-1, over the whole window (1.22)."""
     cos_theta = dot(direction, camera.forward)
-    pixel_area = math.sqrt(dot(camera.right, camera.right) * dot(camera.down, camera.down))
-    return 1.0 / (n_pixels * pixel_area * cos_theta * cos_theta * cos_theta)
+    return 1.0 / (n_pixels * _pixel_area(camera) * cos_theta * cos_theta * cos_theta)
 
 
 @function

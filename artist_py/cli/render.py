@@ -57,8 +57,8 @@ OPTIONS = (
     ),
     click.Option(
         ["--wavelengths"],
-        type=click.Choice(["shared", "independent"]),
-        help="Whether paths share the wavelengths of their iteration, or draw their own.",
+        type=click.Choice(["shared", "independent", "rotate"]),
+        help="Whether paths share the wavelengths of their iteration, or draw their own (and merge, with rotate).",
     ),
     click.Option(["--hero-count"], type=click.Choice([1, 4, 8]), help="Wavelengths per path."),
     click.Option(["--spectral"], is_flag=True, help="Add spectral channels to the EXR, W m^-2 sr^-1 nm^-1."),
@@ -165,6 +165,7 @@ def _render(graph, budget, outputs, options):
         max_memory_bytes=options["max_memory"],
         techniques=options["techniques"],
         technique_length=options["technique_length"] or LONGEST,
+        compile_apart=True,
     )
     record = Record(options["scene"], exr_metadata(graph, budget), outputs)
     save = partial(record.write, statistics={}, complete=False)

@@ -112,6 +112,15 @@ def random_pair(stream, pair):
 
 
 @function
+def lattice_point(u, v, w):
+    """The next of the points in the unit cube that follow each other evenly from any random one, as uniform as that.
+
+    Kronecker's sequence of the powers of 1/g, where g is the real root of g^4 = g + 1 (Roberts 2018).
+    """
+    return (u + 0.8191725133961645) % 1.0, (v + 0.6710436067037893) % 1.0, (w + 0.5497004779019703) % 1.0
+
+
+@function
 def random_number(stream, pair):
     """One number in [0, 1), independent of all pairs: for decisions that stratification does not help."""
     bits = mix64(mix64(stream.key ^ _U64(stream.reversed_index)) + _U64(pair) * _U64(0xD1342543DE82EF95))

@@ -24,6 +24,23 @@ def sample_wavelengths(nodes, zero, u):
 
 
 @function
+def share_below(nodes, wavelength):
+    """Probability of wavelengths below one in nm, in [0, 1]: the inverse of lambda(u)."""
+    first, last = 0, nodes.shape[0] - 1
+    if wavelength <= nodes[first]:
+        return 0.0
+    if wavelength >= nodes[last]:
+        return 1.0
+    while last - first > 1:
+        middle = (first + last) // 2
+        if nodes[middle] <= wavelength:
+            first = middle
+        else:
+            last = middle
+    return (first + (wavelength - nodes[first]) / (nodes[last] - nodes[first])) / (nodes.shape[0] - 1)
+
+
+@function
 def _inverse(nodes, u):
     """Wavelength at u, nm, and 1 / p there."""
     entries = nodes.shape[0] - 1

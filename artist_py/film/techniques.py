@@ -8,8 +8,8 @@ import numpy as np
 from artist_py.film.color import RGB_TO_XYZ
 
 # hit: the eye's path hits an emitter; nee: next-event estimation; vc: two subpaths are connected; lt: a light's path
-# is connected to the lens; vm: two subpaths are merged.
-KINDS = ("hit", "nee", "vc", "lt", "vm")
+# is connected to the lens; lens: a light's path hits the lens; vm: two subpaths are merged.
+KINDS = ("hit", "nee", "vc", "lt", "lens", "vm")
 LONGEST = 8  # longer paths share an image per kind, unless more is asked for
 
 
@@ -41,7 +41,7 @@ class Technique:
             return "connect" if self.s is None else f"connect {self.s}+{self.t}"
         if self.kind == "vm":
             return "merge" if self.m is None else f"merge at {self.m}"
-        return {"hit": "hit", "nee": "next event", "lt": "light image"}[self.kind]
+        return {"hit": "hit", "nee": "next event", "lt": "light image", "lens": "lens hit"}[self.kind]
 
 
 def techniques_of(kinds, max_path_length, longest=LONGEST):
@@ -55,13 +55,13 @@ def techniques_of(kinds, max_path_length, longest=LONGEST):
 
 
 def _of_length(k):
-    """Theory 1.2: for k = 1 an emitter is seen directly, by being hit."""
-    hit = [Technique("hit", k, 0, k + 1)]
+    """Theory 1.2: for k = 1 an emitter is seen directly, by being hit or by hitting the lens."""
+    hit, lens = Technique("hit", k, 0, k + 1), Technique("lens", k, k + 1, 0)
     if k == 1:
-        return hit
+        return [hit, lens]
     connections = [Technique("vc", k, s, k + 1 - s) for s in range(2, k)]
     merges = [Technique("vm", k, m=m) for m in range(1, k)]
-    return [*hit, Technique("nee", k, 1, k), *connections, Technique("lt", k, k, 1), *merges]
+    return [hit, Technique("nee", k, 1, k), *connections, Technique("lt", k, k, 1), lens, *merges]
 
 
 @dataclass
@@ -124,7 +124,7 @@ class TechniqueImages:
         `path_tracing` is the share of the latter that path tracing with next-event estimation has, too.
         `false_colour` shows the luminance of merging in red, and that of connection in blue.
         """
-        merging, connection = self.sum(("vm",)), self.sum(("hit", "nee", "vc", "lt"))
+        merging, connection = self.sum(("vm",)), self.sum(("hit", "nee", "vc", "lt", "lens"))
         return {
             "merging": merging,
             "connection": connection,

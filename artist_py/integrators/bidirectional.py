@@ -4,17 +4,18 @@ A technique that a method does not use is `None` in `Techniques` and is not comp
 """
 
 from ..cameras.perspective import camera_ray, sample_film
-from ..cameras.sensor import pdf_camera_direction
+from ..cameras.sensor import pdf_camera_direction, projected_lens_area
 from ..core.atomic import fetch_and_add
 from ..core.rng import random_pair, stream_of
 from ..core.spectra import black
 from ..jit import function, kernel
-from ..transport.mis import Partial
+from ..transport.mis import eye_start
 from ..transport.recording import Place
 from ..transport.sensing import store_sample, wavelengths_of_path
 from ..transport.subpath import seen_from, start_path
 from ..transport.vertices import CHUNK, has_room
 from .eye_subpath import trace_eye_subpath
+from .lens_hits import splats_per_vertex
 from .light_subpath import trace_light_subpath
 from .pair import LIGHT_SEED, Walk, light_paths_of
 from .path_tracing import FILM, NEXT_TILE, RAYS, SHADOW_RAYS, STOP, TILE, WAVELENGTH, lens_numbers
@@ -51,7 +52,8 @@ def stores_have_room(setup, thread):
     n_light = length * (int(setup.method.light_paths) + 1)
     light = has_room(stores.light, thread, n_light)
     eye = has_room(stores.eye, thread, length)
-    return has_room(stores.splats, thread, n_light) and light and eye
+    splats = has_room(stores.splats, thread, n_light * splats_per_vertex(setup.method.counts.lens))
+    return splats and light and eye
 
 
 @function
@@ -78,6 +80,14 @@ def trace_light_subpaths(setup, thread, index, wavelengths):
 
 
 @function
+def keep_offset(offsets, index, stream):
+    """Keep the number that places the wavelengths of pixel `index`, where merges need it."""
+    if offsets is None:
+        return
+    offsets[index] = random_pair(stream, WAVELENGTH)[0]
+
+
+@function
 def trace_pair(setup, thread, x, y, image):
     """Trace the pair of pixel (x, y), and store what the eye subpath brings without merges."""
     work, sensing = setup.work, setup.sensing
@@ -86,6 +96,7 @@ def trace_pair(setup, thread, x, y, image):
     wavelengths, weights = wavelengths_of_path(sensing, stream, WAVELENGTH)
     row, column = y - work.crop[2], x - work.crop[0]
     index = row * (work.crop[1] - work.crop[0]) + column
+    keep_offset(setup.stores.offsets, index, stream)
     light = trace_light_subpaths(setup, thread, index, wavelengths)
 
     u, v = random_pair(stream, FILM)
@@ -94,7 +105,7 @@ def trace_pair(setup, thread, x, y, image):
     lens_point, origin, direction = camera_ray(setup.camera, film_x, film_y, lens_u, lens_v)
     path = seen_from(start_path(origin, direction, sensing, setup.camera.media), lens_point)
     density = pdf_camera_direction(setup.camera, setup.method.n_pixels, direction)
-    partial = Partial(setup.method.counts.lt / density, 0.0)  # (1.11)
+    partial = eye_start(setup.method.counts, density, projected_lens_area(setup.camera, direction))
     place = Place(row, column, wavelengths, weights * film_weight)
     eye = trace_eye_subpath(setup, thread, index, stream, place, path, partial, film_weight)
     radiance = eye.radiance * film_weight

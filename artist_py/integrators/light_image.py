@@ -3,7 +3,7 @@
 from ..core.rng import stream_of
 from ..core.vector import with_lane
 from ..jit import function, kernel
-from ..transport.recording import LT, Place, record
+from ..transport.recording import Place, record
 from ..transport.sensing import add_sample, wavelengths_of_path
 from .path_tracing import WAVELENGTH
 
@@ -42,4 +42,4 @@ def _value(splat, zero):
 def _record(tables, scene, place, splat, value):
     if tables is None:
         return
-    record(tables, scene.spectra, place, LT, splat.length, 0, value, splat.weight)
+    record(tables, scene.spectra, place, splat.technique, splat.length, 0, value, splat.weight)

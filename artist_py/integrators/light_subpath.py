@@ -14,11 +14,15 @@ from ..geometry.surface import offset_position, surface_at
 from ..jit import function
 from ..scene.tables import ABSORBER
 from ..transport.connect import connect_to_camera
+from ..transport.local_counts import counts_at
 from ..transport.mis import Partial, on_arrival, partial_after
+from ..transport.recording import LT
 from ..transport.roulette import local_survival, survived
+from ..transport.shares import is_chosen, is_vertex_wanted
 from ..transport.splats import choose_pixel, store_splat
 from ..transport.subpath import Path, go_straight, is_passed_through, scatter, vertex_at
 from ..transport.vertices import store_vertex
+from .lens_hits import longest_light_subpath, splat_lens_hit, without_hits
 from .pair import (
     BSDF,
     CHOICE,
@@ -75,10 +79,13 @@ def _walk(  # noqa: C901 - one loop, a line or two per step of the walk
 ):
     scene, limits, counts = setup.scene, setup.limits, setup.method.counts
     partial = Partial(counts.nee, counts.hit * hit_over_emission(start))
+    longest = longest_light_subpath(counts.lens, limits)
     length, rays, shadow_rays = 1, 0, 0
     while True:
         rays += 1
         hit = closest_hit(scene.geometry.embree, path.origin, path.direction, np.inf)
+        if is_chosen(setup.method.chosen.light_image, index):
+            splat_lens_hit(setup, thread, index, emitter, path, partial, hit.t, wavelengths, stream, length)
         if hit.geometry == INVALID_ID:
             break
         surface = surface_at(scene.geometry, scene.needs, path.origin, path.direction, hit)
@@ -93,20 +100,21 @@ def _walk(  # noqa: C901 - one loop, a line or two per step of the walk
         vertex = vertex_at(scene, surface, path, wavelengths)
         if not vertex.is_sampled_back:  # no eye walk could go back there
             break
+        here = counts_at(scene, setup.method, counts, surface)
         survival = local_survival(scene, vertex, wavelengths)
         pair = FIRST_VERTEX + (length - 1) * PAIRS_PER_VERTEX
         if not is_delta_bsdf(material):
-            _store(setup.stores.light, setup.stores.paths, thread, index, surface, path, partial, length)
+            _store(setup, thread, index, surface, path, partial, length)
             shadow_rays += splat(
-                setup, thread, index, vertex, partial, survival, path, wavelengths, stream, length
+                setup, here, thread, index, vertex, partial, survival, path, wavelengths, stream, length
             )
-        if length + 1 >= limits.max_length or random_number(stream, ROULETTE + length) >= survival:
+        if length >= longest or random_number(stream, ROULETTE + length) >= survival:
             break
         _, u_lobe = random_pair(stream, pair + CHOICE)
         step = scatter(scene, vertex, path, wavelengths, stream, pair + BSDF, u_lobe, True)
         if step.path.is_absorbed:
             break
-        partial = partial_after(counts, partial, step, surface, survival, cos_in)
+        partial = partial_after(here, partial, step, surface, survival, cos_in)
         path = survived(step.path, survival)
         length += 1
     return Walk(black(wavelengths), rays, shadow_rays)
@@ -143,7 +151,13 @@ def _next_record(pool, thread):
 
 
 @function
-def _store(pool, paths, thread, index, surface, path, partial, length):
+def _store(setup, thread, index, surface, path, partial, length):
+    if is_vertex_wanted(setup.method.chosen, index):
+        _store_in(setup.stores.light, setup.stores.paths, thread, index, surface, path, partial, length)
+
+
+@function
+def _store_in(pool, paths, thread, index, surface, path, partial, length):
     if pool is None:
         return
     store_vertex(pool, thread, surface, -path.direction, path.throughput, partial, length, index)
@@ -151,17 +165,24 @@ def _store(pool, paths, thread, index, surface, path, partial, length):
 
 
 @function
-def splat(setup, thread, index, vertex, partial, survival, path, wavelengths, stream, length):
-    """Connect a light vertex to the camera, where the method has a light image; returns the number of shadow rays."""
+def splat(setup, counts, thread, index, vertex, partial, survival, path, wavelengths, stream, length):
+    """Connect a light vertex to the camera, where the method has a light image; returns the number of shadow rays.
+
+    `counts` are those for weights here.
+    """
     return _splat(
-        setup.method.techniques.light_image, setup, thread, index, vertex, partial, survival, path, wavelengths,
+        setup.method.techniques.light_image, setup, counts, thread, index, vertex, partial, survival, path, wavelengths,
         stream, length,
     )  # fmt: skip
 
 
 @function
-def _splat(needed, setup, thread, index, vertex, partial, survival, path, wavelengths, stream, length):
+def _splat(
+    needed, setup, counts, thread, index, vertex, partial, survival, path, wavelengths, stream, length
+):
     if needed is None:
+        return 0
+    if not is_chosen(setup.method.chosen.light_image, index):
         return 0
     stores, pair = setup.stores, FIRST_VERTEX + (length - 1) * PAIRS_PER_VERTEX
     u, v = random_pair(stream, pair + SENSOR)
@@ -172,12 +193,11 @@ def _splat(needed, setup, thread, index, vertex, partial, survival, path, wavele
     pixel = choose_pixel(setup.pixel_filter, sensor.film_x, sensor.film_y, number, setup.work.crop)
     if pixel.index < 0:
         return 0
-    connected = connect_to_camera(
-        setup.scene, setup.method.counts, vertex, partial, survival, sensor, wavelengths
-    )
-    value = path.throughput * connected.value * (pixel.weight / setup.method.n_light_paths)
+    partial = without_hits(setup.method, partial)
+    connected = connect_to_camera(setup.scene, counts, vertex, partial, survival, sensor, wavelengths)
+    value = path.throughput * connected.value * (pixel.weight / setup.method.n_image_paths)
     store_splat(
-        stores.techniques, stores.splats, thread, stores.paths[index], pixel.index, value, length + 1,
+        stores.techniques, stores.splats, thread, stores.paths[index], pixel.index, value, LT, length + 1,
         connected.weight,
     )  # fmt: skip
     return connected.rays

@@ -5,6 +5,7 @@ from ..core.rng import stream_of
 from ..jit import kernel
 from ..transport.merge import merge_at
 from ..transport.recording import Place
+from ..transport.rotation import wavelengths_of_pixel, window_of
 from ..transport.roulette import local_survival
 from ..transport.sensing import add_sample, wavelengths_of_path
 from ..transport.vertices import CHUNK, load_vertex
@@ -17,7 +18,7 @@ def gather(setup, grid, merging, progress, image):
     """Take chunks of stored eye vertices until none is left; add what they gather to `image` (h, w, 3)."""
     scene, sensing, work, eye = setup.scene, setup.sensing, setup.work, setup.stores.eye
     stream = stream_of(work.seed, work.iteration, 0, 0)
-    wavelengths, weights = wavelengths_of_path(sensing, stream, 0)
+    shared, rotation = wavelengths_of_path(sensing, stream, 0), merging.rotation
     width = work.crop[1] - work.crop[0]
     merges = 0
     while True:
@@ -26,6 +27,7 @@ def gather(setup, grid, merging, progress, image):
             break
         for index in range(chunk * CHUNK, chunk * CHUNK + eye.used[chunk]):
             record = eye.records[index]
+            wavelengths, weights = wavelengths_of_pixel(rotation, sensing, shared, record.pixel)
             stored = load_vertex(scene, record, sensing.zero, wavelengths)
             survival = local_survival(scene, stored.vertex, wavelengths)
             place = Place(record.pixel // width, record.pixel % width, wavelengths, weights)
@@ -39,6 +41,7 @@ def gather(setup, grid, merging, progress, image):
                 setup.limits,
                 setup.stores.techniques,
                 place,
+                window_of(rotation, sensing.nodes, wavelengths, record.pixel),
             )
             merges += merged.count
             value = stored.throughput * merged.value * weights

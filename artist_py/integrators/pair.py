@@ -9,9 +9,11 @@ from ..core.vector import Spectrum
 from ..jit import function
 from ..scene.tables import Camera, Filter, Scene
 from ..transport.mis import Counts
+from ..transport.photon_density import PhotonDensity
 from ..transport.recording import TechniqueTables
 from ..transport.roulette import Limits
 from ..transport.sensing import Sensing
+from ..transport.shares import Chosen
 from ..transport.vertices import Pool
 from .path_tracing import Pass
 
@@ -55,6 +57,11 @@ class Method(NamedTuple):
     light_paths: float  # per pixel
     offset: float  # in [0, 1): which pixels get one more where `light_paths` is not whole
     hits_everything: bool  # hitting an emitter is a technique like the others; else only where no other can
+    shadow_rays: int | None  # per eye vertex; absent where it is one
+    chosen: Chosen  # light subpaths, by what is done with them
+    n_image_paths: float  # of them, those that the camera sees
+    n_photon_paths: float  # and those that are merged with
+    density: PhotonDensity | None = None  # absent where weights take merges for independent samples
 
 
 class Stores(NamedTuple):
@@ -66,6 +73,8 @@ class Stores(NamedTuple):
     paths: Table  # path_dtype, one row per light subpath
     resume: Table  # int64 (threads, 2): tile (or -1) and pixel in it at which records ran short
     techniques: TechniqueTables | None  # where contributions are also kept by technique
+    # float64: the number that places the wavelengths of each pixel's subpaths, where merges have to bring them in line
+    offsets: Table | None = None
 
 
 class Setup(NamedTuple):

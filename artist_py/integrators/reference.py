@@ -2,7 +2,8 @@
 
 Every path found is written down in full, and weighed with the densities of all techniques that could have found it
 (reference_densities.py). An iteration takes `n_light` light subpaths and `eye_samples` eye subpaths per pixel, all with
-the same wavelengths; every eye subpath is connected to one light subpath drawn at random.
+the same wavelengths; every eye subpath is connected to one light subpath drawn at random, or to as many as
+[render.samples] says.
 """
 
 from ..cameras.perspective import camera_ray, sample_film
@@ -13,12 +14,12 @@ from ..geometry.surface import offset_position
 from ..transport.subpath import Path, start_path
 from .pair import LIGHT_SEED
 from .path_tracing import lens_numbers
-from .reference_paths import end_node, trace_subpath
+from .reference_paths import end_node, light_node, trace_subpath
 from .reference_techniques import connections, hits, merges, next_events, photon_map, splats
 
 # Random dimensions of the beginning of a subpath.
 FILM, POSITION, DIRECTION = 0, 0, 1
-EMITTER, PARTNER = 0, 1
+EMITTER, N_PARTNERS, PARTNER = 0, 1, 60_000
 
 # --- subpaths -----------------------------------------------------------------------------------------------------
 
@@ -40,8 +41,10 @@ def trace_light(reference, index):
         offset_position(start.position, start.normal, start.extent, start.direction), start.direction,
         radiance * (start.cos_theta / start.density), 0.0, start.position, 1.0, sensing.ratio, emitter.media, False,
     )  # fmt: skip
-    node = end_node(start.position, start.normal, start.extent, number)
-    return trace_subpath(scene, reference.limits, stream, reference.wavelengths, node, path, True)
+    node = light_node(scene, number, start)
+    return trace_subpath(
+        scene, reference.camera, reference.limits, stream, reference.wavelengths, node, path, True
+    )
 
 
 def trace_eye(reference, x, y, sample):
@@ -55,7 +58,7 @@ def trace_eye(reference, x, y, sample):
     path = start_path(origin, direction, reference.sensing, camera.media)
     node = end_node(lens_point, camera.forward, 0.0, -1)
     scene, limits = reference.scene, reference.limits
-    subpath = trace_subpath(scene, limits, stream, reference.wavelengths, node, path, None)
+    subpath = trace_subpath(scene, camera, limits, stream, reference.wavelengths, node, path, None)
     return subpath, stream, film_weight
 
 
@@ -69,17 +72,23 @@ def pixel_radiance(reference, x, y, eye_samples, light_subpaths, photons):
         eye, stream, film_weight = trace_eye(reference, x, y, sample)
         found = hits(reference, eye) + next_events(reference, eye, stream)
         if light_subpaths:
-            partner = int(random_number(stream, PARTNER) * len(light_subpaths))
-            found = found + connections(reference, eye, light_subpaths[partner])
+            for partner in partners(reference, stream):
+                found = found + connections(reference, eye, light_subpaths[partner])
             found = found + merges(reference, eye, photons)
         total = total + found * film_weight
     return total * (1.0 / eye_samples)
 
 
+def partners(reference, stream):
+    """Indices of the light subpaths that an eye subpath is connected to: drawn at random, `counts.vc` on average."""
+    count = int(reference.counts.vc + random_number(stream, N_PARTNERS))
+    return [int(random_number(stream, PARTNER + i) * reference.n_light) for i in range(count)]
+
+
 def render_reference(reference, eye_samples, is_stopped):
     """Yields `((row, column), radiance)` in the window: contributions to pixels, to be added up."""
     light_subpaths = [trace_light(reference, i) for i in range(reference.n_light)]
-    photons = photon_map(light_subpaths)
+    photons = photon_map(light_subpaths, reference.chosen.merge)
     x0, x1, y0, y1 = reference.crop
     for index, light in enumerate(light_subpaths):
         for pixel, value in splats(reference, light, index):

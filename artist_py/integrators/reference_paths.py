@@ -8,13 +8,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..bsdf.dispatch import is_delta_bsdf
+from ..bsdf.dispatch import is_delta_bsdf, is_mergeable
+from ..cameras.sensor import LensHit, hit_lens
 from ..core.frame import Frame, frame_around
 from ..core.rng import random_number
-from ..core.vector import Spectrum, Vec3, dot
+from ..core.vector import Spectrum, Vec3, dot, lane, lane_count
+from ..emitters.infinite import BEYOND_THE_SCENE, is_in_background
 from ..geometry.embree import INVALID_ID, closest_hit
 from ..geometry.surface import Surface, surface_at
-from ..scene.tables import ABSORBER
+from ..scene.tables import ABSORBER, DIRECTIONAL_EMITTER
 from ..transport.media import ior_around
 from ..transport.roulette import local_survival, survived
 from ..transport.subpath import go_straight, is_passed_through, scatter, vertex_on
@@ -38,8 +40,11 @@ class Node(NamedTuple):
     outside: object  # index of refraction around a dielectric: a number, or one per wavelength
     survival: float  # probability that roulette lets a subpath go on
     is_delta: bool  # whether the walk has left by a delta lobe
-    can_join: bool  # whether connections and merges are possible here
+    can_join: bool  # whether connections are possible here, and merges unless `can_merge` says otherwise
     reflectance: Spectrum | None  # of the material here; a point of an emitter or of the lens has none
+    can_merge: bool = False
+    is_far: bool = False  # at infinity: a direction, which has neither a distance nor a cosine (theory 1.5)
+    lane: int = 0  # the wavelength whose index of refraction has led the walk on
 
 
 class Edge(NamedTuple):
@@ -62,6 +67,17 @@ class EmitterHit(NamedTuple):
     surface: Surface
     edge: Edge
     throughput: Spectrum
+    is_far: bool = False
+
+
+class LensMeeting(NamedTuple):
+    """The lens, met by a light subpath."""
+
+    n_nodes: int  # nodes of the subpath up to there
+    hit: LensHit
+    node: Node
+    edge: Edge
+    throughput: Spectrum
 
 
 class Subpath(NamedTuple):
@@ -70,7 +86,7 @@ class Subpath(NamedTuple):
     nodes: list
     edges: list
     throughputs: list
-    hits: list
+    hits: list  # EmitterHit of eye subpaths, LensMeeting of those from a light
 
 
 class FullPath(NamedTuple):
@@ -81,15 +97,22 @@ class FullPath(NamedTuple):
     second: Vec3  # `nodes[1]` as its first edge has found it: merges move it by up to a radius
 
 
-def end_node(position, normal, extent, emitter):
+def end_node(position, normal, extent, emitter, is_far=False):
     """The node of a point that ends paths, on an emitter or (`emitter` < 0) on the lens."""
     surface = Surface(position, normal, normal, 0.0, 0.0, extent, -1, emitter)
-    return Node(surface, frame_around(normal), 1.0, 1.0, False, True, None)
+    return Node(surface, frame_around(normal), 1.0, 1.0, False, True, None, is_far=is_far)
+
+
+def light_node(scene, number, point):
+    """The node of a point on emitter `number`; `point` has a position, a normal and an extent."""
+    is_far = scene.emitters.records[number].kind >= DIRECTIONAL_EMITTER
+    return end_node(point.position, point.normal, point.extent, number, is_far)
 
 
 def emitter_node(hit):
     """The node of an emitter that a subpath has met."""
-    return Node(hit.surface, frame_around(hit.surface.shading_normal), 1.0, 1.0, False, True, None)
+    frame = frame_around(hit.surface.shading_normal)
+    return Node(hit.surface, frame, 1.0, 1.0, False, True, None, is_far=hit.is_far)
 
 
 def reverse(edge):
@@ -99,6 +122,9 @@ def reverse(edge):
 
 def connecting_edge(start, end):
     """The `Edge` between two nodes."""
+    if start.is_far:
+        direction = start.surface.normal
+        return Edge(direction, 1.0, 1.0, abs(dot(direction, end.surface.normal)))
     way = end.surface.position - start.surface.position
     distance_squared = dot(way, way)
     direction = way * (1.0 / np.sqrt(distance_squared))
@@ -144,19 +170,26 @@ def node_at(scene, vertex, media, wavelengths):
     outside = ior_around(scene.needs.media, scene, material, vertex.wo.z > 0.0, media, wavelengths)
     survival = local_survival(scene, vertex, wavelengths)
     is_delta = is_delta_bsdf(material)
-    return Node(vertex.surface, vertex.frame, outside, survival, is_delta, not is_delta, vertex.reflectance)
+    can_merge = not is_delta and is_mergeable(scene.needs.sharp, material)
+    return Node(
+        vertex.surface, vertex.frame, outside, survival, is_delta, not is_delta, vertex.reflectance, can_merge
+    )
 
 
-def trace_subpath(scene, limits, stream, wavelengths, start, path, light_walk):
-    """Follow `path` from the node `start` up to `limits.max_length` edges; emitters met are noted, walls or not."""
+def trace_subpath(scene, camera, limits, stream, wavelengths, start, path, light_walk):
+    """Follow `path` from the node `start` up to `limits.max_length` edges; ends met are noted, walls or not.
+
+    These are emitters for eye subpaths, and for light subpaths (`light_walk`) the lens of `camera`, if there is one.
+    """
     subpath = Subpath([start], [], [], [])
     while True:
         hit = closest_hit(scene.geometry.embree, path.origin, path.direction, np.inf)
+        _note_far_ends(scene, camera, subpath, path, hit, light_walk)
         if hit.geometry == INVALID_ID:
             return subpath
         surface = surface_at(scene.geometry, scene.needs, path.origin, path.direction, hit)
         edge = edge_to(surface, path, subpath.nodes[-1])
-        if surface.emitter >= 0:
+        if surface.emitter >= 0 and not light_walk:
             subpath.hits.append(EmitterHit(len(subpath.nodes), surface, edge, path.throughput))
         material = scene.materials[surface.material]
         if is_passed_through(scene, surface, material, path):
@@ -171,8 +204,57 @@ def trace_subpath(scene, limits, stream, wavelengths, start, path, light_walk):
         step = _next(scene, stream, wavelengths, vertex, path, len(subpath.edges), light_walk)
         if step.path.is_absorbed or random_number(stream, ROULETTE + len(subpath.edges)) >= node.survival:
             return subpath
-        subpath.nodes[-1] = node._replace(is_delta=step.is_delta)
+        subpath.nodes[-1] = node._replace(is_delta=step.is_delta, lane=lane_left(step.path))
         path = survived(step.path, node.survival)
+
+
+def lane_left(path):
+    """The one wavelength that dispersion has left of a path; 0 where it has them all."""
+    if path.ratio is None:
+        return 0
+    left = [i for i in range(lane_count(path.ratio)) if lane(path.ratio, i) > 0.0]
+    return left[0] if len(left) == 1 else 0
+
+
+def _note_far_ends(scene, camera, subpath, path, hit, light_walk):
+    """Note the lens, or what is at infinity."""
+    if light_walk and camera.lens is not None:
+        _note_lens(subpath, camera, path, hit.t)
+    elif not light_walk and hit.geometry == INVALID_ID:
+        _note_background(scene, subpath, path)
+
+
+def _note_lens(subpath, camera, path, t_surface):
+    """Note the lens where `path` meets it before `t_surface`."""
+    hit = hit_lens(camera, path.origin, path.direction)
+    if 0.0 <= hit.t < t_surface:
+        node = lens_node(camera, path, hit)
+        edge = edge_to(node.surface, path, subpath.nodes[-1])
+        subpath.hits.append(LensMeeting(len(subpath.nodes), hit, node, edge, path.throughput))
+
+
+def lens_node(camera, path, hit):
+    """The node of the point on the lens that `path` has hit."""
+    return end_node(path.origin + path.direction * hit.t, camera.forward, 0.0, -1)
+
+
+def _note_background(scene, subpath, path):
+    """Note every emitter at infinity in the direction of `path`."""
+    if scene.emitters is None or scene.emitters.background is None:
+        return
+    for number in range(scene.emitters.background, scene.emitters.records.shape[0]):
+        if is_in_background(scene.emitters.records[number], path.direction):
+            subpath.hits.append(background_hit(scene, subpath, path, number))
+
+
+def background_hit(scene, subpath, path, number):
+    """The `EmitterHit` of emitter `number` at infinity."""
+    radius = scene.emitters.records[number].radius
+    position = path.origin + path.direction * (BEYOND_THE_SCENE * radius)
+    surface = end_node(position, -path.direction, 0.0, number).surface
+    cosine = abs(dot(path.direction, subpath.nodes[-1].surface.normal))
+    edge = Edge(path.direction, 1.0, cosine, 1.0)
+    return EmitterHit(len(subpath.nodes), surface, edge, path.throughput, True)
 
 
 def _is_end(limits, subpath, material, vertex, light_walk):
@@ -183,6 +265,8 @@ def _is_end(limits, subpath, material, vertex, light_walk):
 
 def edge_to(surface, path, start):
     """The `Edge` of a ray that started from the node `start` and has hit `surface`."""
+    if start.is_far:
+        return Edge(path.direction, 1.0, 1.0, abs(dot(path.direction, surface.normal)))
     way = surface.position - start.surface.position
     cosines = (abs(dot(path.direction, normal)) for normal in (start.surface.normal, surface.normal))
     return Edge(path.direction, dot(way, way), *cosines)

@@ -24,14 +24,27 @@ from ..transport.merge import Merging
 from ..transport.mis import Counts
 from ..transport.roulette import Limits
 from ..transport.sensing import Sensing
+from ..transport.shares import Chosen, is_chosen
 from ..transport.splats import choose_pixel
 from ..transport.subpath import is_on_side
+from .lens_hits import is_seen
+from .methods import ALL
 from .pair import LIGHT_SEED
-from .reference_densities import HIT, LT, NEE, VC, VM, technique_densities, weight_of
-from .reference_paths import connecting_edge, end_node, joined, merged, path_of_hit, up_to, vertex_of
+from .reference_densities import HIT, LENS, LT, NEE, VC, VM, technique_densities, weight_of
+from .reference_paths import (
+    connecting_edge,
+    end_node,
+    joined,
+    light_node,
+    merged,
+    path_of_hit,
+    up_to,
+    vertex_of,
+)
 
 # Random dimensions of what vertex i is connected to (+ i); see also reference_paths.py.
 EMITTER_POINT, LENS_POINT, EMITTER_CHOICE, PIXEL_CHOICE = 10_000, 20_000, 30_000, 40_000
+LENS_PIXEL_CHOICE, NEXT_RAY = 50_000, 100_000  # NEXT_RAY: from one shadow ray of a vertex to the next
 
 
 class Reference(NamedTuple):
@@ -48,6 +61,8 @@ class Reference(NamedTuple):
     merging: Merging
     crop: tuple
     n_light: int  # light subpaths
+    chosen: Chosen  # of them, by what is done with them
+    n_image_paths: float  # those that the camera sees, on average
     seed: int
     iteration: int
 
@@ -58,12 +73,31 @@ class Reference(NamedTuple):
         return (x1 - x0) * (y1 - y0)
 
 
-def counts_of(mode, n_eye, n_light, radius, power):
-    """`Counts` of a mode: "vcm", "bdpt" (no merges) or "bdpm" (merges alone); `power` says by which heuristic."""
-    connects, merges = float(mode != "bdpm"), float(mode != "bdpt")
-    area = n_light * math.pi * radius**2
-    can_connect = connects * (n_light > 0)
-    return Counts(connects, connects, can_connect, connects * n_light / n_eye, merges * area, power or None)
+def counts_of(mode, n_eye, n_light, radius, power, samples=ALL, lens=False):
+    """`Counts` of a mode: "vcm", "bdpt" (no merges) or "bdpm" (merges alone); `power` says by which heuristic.
+
+    `samples` are those of [render.samples], `lens` says whether there is one that light can hit.
+    """
+    next_event, connections, image, merging = (
+        1 if each is None else each for each in samples_in(mode, samples)
+    )
+    area = merging * n_light * math.pi * radius**2
+    light_image = image * n_light / n_eye
+    return Counts(
+        float(mode != "bdpm"),
+        float(next_event),
+        float(connections * (n_light > 0)),
+        light_image,
+        area,
+        power or None,
+        light_image if lens and light_image > 0.0 else None,
+    )
+
+
+def samples_in(mode, samples):
+    """`(next_event, connections, light_image, merging)` of [render.samples] in a mode, 0 what it leaves out."""
+    given = samples.next_event, samples.connections, samples.light_image, samples.merging
+    return {"vcm": given, "bdpt": (*given[:3], 0), "bdpm": (0, 0, 0, given[3])}[mode]
 
 
 # --- techniques: what each brings, weighted -----------------------------------------------------------------------
@@ -101,8 +135,13 @@ def scattering(reference, subpath, index, wi, light_walk):
 
 
 def connectable(subpath):
-    """Indices of the nodes that can be connected and merged."""
+    """Indices of the nodes that can be connected."""
     return [i for i, node in enumerate(subpath.nodes) if i > 0 and node.can_join]
+
+
+def mergeable(subpath):
+    """Indices of the nodes that can be merged at."""
+    return [i for i in connectable(subpath) if subpath.nodes[i].can_merge]
 
 
 def next_events(reference, eye, stream):
@@ -110,22 +149,25 @@ def next_events(reference, eye, stream):
     total = reference.sensing.zero
     if reference.scene.emitters is None or reference.counts.nee == 0.0:
         return total
+    n_rays = int(reference.counts.nee)
     for index in connectable(eye):
-        total = total + eye.throughputs[index - 1] * next_event(reference, eye, index, stream)
+        for ray in range(n_rays):
+            value = next_event(reference, eye, index, stream, ray * NEXT_RAY)
+            total = total + eye.throughputs[index - 1] * value * (1.0 / n_rays)
     return total
 
 
-def next_event(reference, eye, index, stream):
+def next_event(reference, eye, index, stream, dimension):
     """Radiance per throughput from an emitter chosen for one vertex."""
     scene, nothing = reference.scene, reference.sensing.zero
     node = eye.nodes[index]
-    number = choose_emitter(scene.emitters.alias, random_number(stream, EMITTER_CHOICE + index))
+    number = choose_emitter(scene.emitters.alias, random_number(stream, EMITTER_CHOICE + index + dimension))
     emitter = scene.emitters.records[number]
-    u, v = random_pair(stream, EMITTER_POINT + index)
+    u, v = random_pair(stream, EMITTER_POINT + index + dimension)
     point = sample_emitter(scene, emitter, node.surface.position, u, v)
     if point.pdf_solid_angle == 0.0:
         return nothing
-    light = end_node(point.position, point.normal, point.extent, number)
+    light = light_node(scene, number, point)
     edge = connecting_edge(light, node)
     if not is_emitting_towards(emitter, point.normal, edge.direction):
         return nothing
@@ -171,9 +213,11 @@ def connection(reference, eye, i, light, j):
 def splats(reference, light, index):
     """`[(pixel, value), ...]` of light subpath `index` connected to the lens; pixels row-major in the window."""
     found = []
-    if light is None or reference.counts.lt == 0.0:
+    if light is None or reference.counts.lt == 0.0 or not is_chosen(reference.chosen.light_image, index):
         return found
     stream = stream_of(reference.seed ^ LIGHT_SEED, reference.iteration, index, 0)
+    if reference.counts.lens is not None:
+        found += lens_hits(reference, light, stream)
     for i in connectable(light):
         u, v = random_pair(stream, LENS_POINT + i)
         position = light.nodes[i].surface.position
@@ -183,7 +227,24 @@ def splats(reference, light, index):
             pixel = choose_pixel(reference.pixel_filter, sensor.film_x, sensor.film_y, number, reference.crop)
             if pixel.index >= 0:
                 value = light.throughputs[i - 1] * splat(reference, light, i, sensor)
-                found.append((pixel.index, value * (pixel.weight / reference.n_light)))
+                found.append((pixel.index, value * (pixel.weight / reference.n_image_paths)))
+    return found
+
+
+def lens_hits(reference, light, stream):
+    """`[(pixel, value), ...]` of the lens, where the light subpath has hit it."""
+    found, scene = [], reference.scene
+    emitter = scene.emitters.records[light.nodes[0].surface.emitter]
+    for meeting in light.hits:
+        hit, length = meeting.hit, meeting.n_nodes
+        if not is_seen(scene, emitter, length):
+            continue
+        number = random_number(stream, LENS_PIXEL_CHOICE + length)
+        pixel = choose_pixel(reference.pixel_filter, hit.film_x, hit.film_y, number, reference.crop)
+        if pixel.index >= 0:
+            path = joined(light.nodes[:length], light.edges[: length - 1], meeting.edge, [meeting.node], [])
+            scale = weight(reference, (LENS, length + 1), path) * hit.importance / reference.n_image_paths
+            found.append((pixel.index, meeting.throughput * (pixel.weight * scale)))
     return found
 
 
@@ -210,11 +271,12 @@ class Photons(NamedTuple):
     places: list  # (subpath, index of its node)
 
 
-def photon_map(light_subpaths):
-    """`Photons` of an iteration's light subpaths."""
+def photon_map(light_subpaths, share):
+    """`Photons` of those of an iteration's light subpaths that are in a `Share`."""
     from scipy.spatial import cKDTree
 
-    places = [(light, i) for light in light_subpaths if light for i in connectable(light)]
+    chosen = [light for index, light in enumerate(light_subpaths) if light and is_chosen(share, index)]
+    places = [(light, i) for light in chosen for i in mergeable(light)]
     positions = [light.nodes[i].surface.position.values for light, i in places]
     return Photons(cKDTree(np.array(positions)) if positions else None, places)
 
@@ -224,7 +286,7 @@ def merges(reference, eye, photons):
     total = reference.sensing.zero
     if photons.tree is None or reference.counts.vm_area == 0.0:
         return total
-    for i in connectable(eye):
+    for i in mergeable(eye):
         position = eye.nodes[i].surface.position.values
         near = photons.tree.query_ball_point(position, reference.merging.radius)
         for light, j in (photons.places[each] for each in sorted(near)):

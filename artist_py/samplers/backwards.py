@@ -15,17 +15,21 @@ from ..core.table import Table
 from ..integrators.bidirectional import trace_pairs
 from ..integrators.light_image import add_splats
 from ..integrators.merging import MERGES, gather
-from ..integrators.methods import METHODS, method_of
+from ..integrators.methods import has_lens_hits, method_of, subset_of
 from ..integrators.pair import Setup, Stores, path_dtype
 from ..integrators.path_tracing import RAYS, SHADOW_RAYS, STOP, Pass
 from ..transport.merge import Merging
 from ..transport.photon_grid import Grid, count_photons, photon_dtype, place_photons
+from ..transport.rotation import Rotation
 from ..transport.splats import splat_dtype
-from ..transport.vertices import CHUNK, NEXT_CHUNK, SHORTAGE, Pool, vertex_dtype
-from .memory import RECORDS_PER_PATH
+from ..transport.vertices import CHUNK, NEXT_CHUNK, SHORTAGE, Pool
+from .memory import RECORDS_PER_PATH, stored_vertex_dtype
+from .pilot import Pilot
 from .stochastic import StochasticSampler
-from .wavelengths import van_der_corput
+from .wavelengths import mean_acceptance, van_der_corput
 
+GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+SHARES_SEED = 0x5348  # makes the random starts of shares others than those of wavelengths
 SMALLEST_RADIUS = 1e-7  # of the scene's radius: below, float32 positions decide what is near
 
 
@@ -40,6 +44,16 @@ def radius_of(first, alpha, iteration, schedule="knaus-zwicker"):
         return first * n ** (0.5 * (alpha - 1.0))
     log_ratio = math.lgamma(n + alpha) - math.lgamma(1 + alpha) - math.lgamma(n + 1)
     return first * math.exp(0.5 * log_ratio)
+
+
+def share_offsets(seed, iteration):
+    """Offsets of the three shares of light subpaths in an iteration (`Chosen`), each uniformly distributed.
+
+    They follow the golden ratio's sequence, which goes evenly with the one that deals subpaths out to pixels. Even and
+    odd iterations have random starts of their own, like all their random numbers (core/rng.py).
+    """
+    starts = np.random.default_rng([seed, iteration & 1, SHARES_SEED]).random(3)
+    return tuple(((starts + (iteration >> 1) * GOLDEN) % 1.0).tolist())
 
 
 def merge_radius(compiled, iteration):
@@ -62,18 +76,34 @@ class BackwardsSampler(StochasticSampler):
         super().__init__(compiled, film, threads, recorder)
         render = compiled.graph.render
         self.method_name, self.merging = render.integrator, render.merging
-        self.subset = METHODS[render.integrator]
+        self.subset = subset_of(render.integrator, render.samples)
         self.n_pixels = film.width * film.height
         self.light_paths = light_paths  # per pixel
         self.lanes = render.hero_count
         self.counts = {"light_vertices": 0, "eye_vertices": 0, "merges": 0}
         self.phases = dict.fromkeys(("subpaths", "photon_grid", "merging", "light_image", "film"), 0.0)
+        self.offsets = self._offsets(compiled, render)
+        self.acceptance = 1.0
+        if self.offsets is not None:
+            tolerance = self.merging.wavelength_tolerance
+            self.acceptance = mean_acceptance(compiled.nodes, self.lanes, tolerance)
         self.paths = Table(np.zeros(math.ceil(self.n_pixels * self.light_paths) + 1, path_dtype))
-        self.light = self._pool(vertex_dtype(self.lanes), self.subset.connect or self.subset.merge)
-        self.eye = self._pool(vertex_dtype(self.lanes), self.subset.merge)
+        vertex = stored_vertex_dtype(compiled)
+        self.light = self._pool(vertex, self.subset.connect or self.subset.merge)
+        self.eye = self._pool(vertex, self.subset.merge)
         self.splats = self._pool(splat_dtype(self.lanes, recorder is not None), self.subset.light_image)
+        is_weighed = self.subset.merge and not self.subset.merge_once
+        self.pilot = None
+        if is_weighed and self.merging.correlation == "vcm+":
+            self.pilot = Pilot(self, merge_radius(compiled, 0))
 
     # --- stores
+
+    def _offsets(self, compiled, render):
+        """Room for what places each pixel's wavelengths, where merges ask for it; else `None`."""
+        if render.wavelengths != "rotate" or not self.subset.merge:
+            return None
+        return Table(np.zeros(self.n_pixels))
 
     def _pool(self, dtype, is_needed):
         """An empty pool with room for some records per path, or `None`."""
@@ -85,7 +115,9 @@ class BackwardsSampler(StochasticSampler):
     def _pool_of(self, records):
         ends = Table(np.zeros((self.threads, 2), np.int64))
         used = Table(np.zeros(len(records) // CHUNK, np.int32))
-        return Pool(Table(records), Table(np.zeros(2, np.int64)), ends, used)
+        needs = self.compiled.scene.needs
+        state = Table(np.zeros(2, np.int64))
+        return Pool(Table(records), state, ends, used, needs.smooth_triangles, needs.textures)
 
     def _enlarge(self):
         """Give the pools that ran short half as much again; `False` if none did."""
@@ -107,6 +139,7 @@ class BackwardsSampler(StochasticSampler):
 
     def iterate(self, iteration, stop=None):
         """Trace the subpaths of an iteration, merge, and add to the film; `False` if `stop` was set meanwhile."""
+        self._count_pilot_photons()
         begun = time.monotonic()
         for pool in (self.light, self.eye, self.splats):
             _empty(pool)
@@ -138,25 +171,54 @@ class BackwardsSampler(StochasticSampler):
             self.n_pixels,
             self.light_paths,
             van_der_corput(iteration),
-            math.pi * radius**2,
+            math.pi * radius**2 * self.acceptance,  # n_vm P_acc (2.7)
             compiled.graph.render.heuristic == "power",
+            has_lens_hits(self.subset, compiled.camera),
+            compiled.graph.render.samples,
+            share_offsets(self.seed, iteration),
         )
-        stores = Stores(self.light, self.eye, self.splats, self.paths, Table(resume), self.technique_tables)
+        if self.pilot is not None:
+            method = method._replace(density=self.pilot.density)
+        stores = Stores(
+            self.light, self.eye, self.splats, self.paths, Table(resume), self.technique_tables, self.offsets
+        )
         camera, pixel_filter = compiled.camera, compiled.pixel_filter
         return Setup(scene, camera, pixel_filter, sensing, self.limits, work, method, stores), radius
+
+    def _count_pilot_photons(self):
+        """Have the photon density that weights ask for, before the first iteration."""
+        if self.pilot is None or self.pilot.is_done:
+            return
+        begun = time.monotonic()
+        self.run(self.pilot.jobs(self))
+        self.pilot.is_done = True
+        self.phases["pilot"] = time.monotonic() - begun
 
     def _grid(self, n_photons, radius):
         """An empty grid for so many photons."""
         buckets = 1 << max((n_photons - 1).bit_length(), 4)
-        photons = np.empty(n_photons, photon_dtype(self.lanes))
-        return Grid(Table(photons), Table(np.zeros(buckets + 1, np.int64)), 2.0 * radius)
+        photons = np.empty(n_photons, photon_dtype(self.lanes, self.offsets is not None))
+        return Grid(Table(photons), Table(np.zeros(buckets + 1, np.int32)), 2.0 * radius)
+
+    def _sharp_materials(self):
+        """The scene's materials, where some are not merged at, or `None`."""
+        return self.compiled.scene.materials if self.compiled.scene.needs.sharp else None
+
+    def _most_photons(self, share):
+        """Number of stored light vertices of the subpaths that are merged with."""
+        n_vertices = self.paths.array["n_vertices"]
+        if share is not None:
+            passed = np.floor(np.arange(len(n_vertices) + 1) * share.share + share.offset)
+            n_vertices = n_vertices[np.diff(passed) > 0]
+        return int(n_vertices.sum())
 
     def _merging(self, setup, radius):
         return Merging(
             radius,
-            1.0 / (math.pi * radius**2 * setup.method.n_light_paths),
+            1.0 / (math.pi * radius**2 * setup.method.n_photon_paths),
             self.merging.min_normal_cosine,
             True if self.merging.kernel == "epanechnikov" else None,
+            self.offsets and Rotation(self.merging.wavelength_tolerance, self.offsets),
         )
 
     def _merge(self, setup, radius):
@@ -164,18 +226,26 @@ class BackwardsSampler(StochasticSampler):
         if self.eye is None:
             return
         begun = time.monotonic()
-        grid = self._grid(int(self.paths.array["n_vertices"].sum()), radius)
+        share, materials = setup.method.chosen.merge, self._sharp_materials()
+        grid = self._grid(self._most_photons(share), radius)
         ranges = list(pairwise(np.linspace(0, len(grid.starts) - 1, self.threads + 1).astype(int).tolist()))
         records = self.light.records
-        counts = self.run([(count_photons, (grid, records, self.paths, *each)) for each in ranges])
+        counts = self.run(
+            [(count_photons, (grid, records, self.paths, share, materials, *each)) for each in ranges]
+        )
         before = np.cumsum([0, *counts]).tolist()
         places = zip(ranges, before, strict=False)
-        self.run([(place_photons, (grid, records, self.paths, *each, start)) for each, start in places])
+        self.run(
+            [
+                (place_photons, (grid, records, self.paths, share, materials, *each, start, self.offsets))
+                for each, start in places
+            ]
+        )
         sorted_at = time.monotonic()
         merging = self._merging(setup, radius)
         progress = np.zeros(2, np.int64)
         self.run([(gather, (setup, grid, merging, Table(progress), Table(self.image)))] * self.threads)
-        self.counts["light_vertices"] += len(grid.photons)
+        self.counts["light_vertices"] += sum(counts)
         self.counts["eye_vertices"] += int(self.eye.used.array.sum())
         self.counts["merges"] += int(progress[MERGES])
         self.phases["photon_grid"] += sorted_at - begun
@@ -200,9 +270,12 @@ class BackwardsSampler(StochasticSampler):
             calls.append((add_splats, (setup, 0, 0, image)))
         if self.eye is not None:
             grid, merging = self._grid(0, radius), self._merging(setup, radius)
-            calls.append((count_photons, (grid, self.light.records, self.paths, 0, 0)))
-            calls.append((place_photons, (grid, self.light.records, self.paths, 0, 0, 0)))
+            given = grid, self.light.records, self.paths, setup.method.chosen.merge, self._sharp_materials()
+            calls.append((count_photons, (*given, 0, 0)))
+            calls.append((place_photons, (*given, 0, 0, 0, self.offsets)))
             calls.append((gather, (setup, grid, merging, Table(np.zeros(2, np.int64)), image)))
+        if self.pilot is not None:
+            calls.append(self.pilot.jobs(self)[0])
         return self.compile_calls(calls, observer)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..core.table import Table
 from ..errors import OptionError
-from ..integrators.methods import METHODS
+from ..integrators.methods import METHODS, subset_of
 from ..transport.photon_grid import photon_dtype
 from ..transport.splats import splat_dtype
 from ..transport.vertices import vertex_dtype
@@ -14,6 +14,13 @@ BAND_NM = 10
 RECORDS_PER_PATH = 4  # vertices that are stored of a subpath, about; pools that run short grow
 BYTES_PER_FACE = 110  # of Embree's acceleration structure, about
 FEWEST_LIGHT_PATHS = 0.05  # per pixel
+
+
+def stored_vertex_dtype(compiled):
+    """Layout of the vertices that a render stores."""
+    needs = compiled.scene.needs
+    lanes = compiled.graph.render.hero_count
+    return vertex_dtype(lanes, needs.smooth_triangles is not None, needs.textures is not None)
 
 
 def crop_of(graph):
@@ -45,36 +52,42 @@ def memory_estimate(compiled, settings):
     light_paths = compiled.graph.render.merging.light_paths
     return {
         "film": pixels * (12 + 24 + 12 + (24 if "variance" in settings.aovs else 0) + 12 * bands),
-        "techniques": pixels * _bytes_of_techniques(compiled.graph.render, settings),
+        "techniques": pixels * _bytes_of_techniques(compiled, settings),
         "auxiliary outputs": pixels * 60 if set(settings.aovs) - {"variance"} else 0,
         "geometry": sum(array.nbytes for array in arrays) + (emitters.records.nbytes if emitters else 0),
         "acceleration structure": BYTES_PER_FACE * faces,
         "spectra": compiled.spectra.nbytes,
         "textures": sum(image.nbytes for image in compiled.texture_images),
-        "eye vertices": pixels * _bytes_per_eye_path(compiled.graph.render),
-        "light vertices": round(pixels * light_paths * _bytes_per_light_path(compiled.graph.render)),
+        "eye vertices": pixels * _bytes_per_eye_path(compiled),
+        "light vertices": round(pixels * light_paths * _bytes_per_light_path(compiled)),
     }
 
 
-def _bytes_of_techniques(render, settings):
+def _bytes_of_techniques(compiled, settings):
     if not settings.techniques:
         return 0
-    return 3 * BYTES_PER_VALUE * len(techniques_of_render(render, settings.technique_length))
+    return 3 * BYTES_PER_VALUE * len(techniques_of_render(compiled, settings.technique_length))
 
 
-def _bytes_per_eye_path(render):
-    method = METHODS.get(render.integrator)
-    return RECORDS_PER_PATH * vertex_dtype(render.hero_count).itemsize if method and method.merge else 0
+def _subset(render):
+    """The `Subset` of a bidirectional method, None for others."""
+    return subset_of(render.integrator, render.samples) if render.integrator in METHODS else None
 
 
-def _bytes_per_light_path(render):
+def _bytes_per_eye_path(compiled):
+    method = _subset(compiled.graph.render)
+    return RECORDS_PER_PATH * stored_vertex_dtype(compiled).itemsize if method and method.merge else 0
+
+
+def _bytes_per_light_path(compiled):
     """Stored vertices, their copies in the photon grid, and splats."""
-    method, lanes = METHODS.get(render.integrator), render.hero_count
+    render = compiled.graph.render
+    method, lanes = _subset(render), render.hero_count
     if method is None:
         return 0
-    size = 40
+    size, photon = 40, photon_dtype(lanes, render.wavelengths == "rotate")
     if method.merge:
-        size += RECORDS_PER_PATH * (vertex_dtype(lanes).itemsize + photon_dtype(lanes).itemsize + 16)
+        size += RECORDS_PER_PATH * (stored_vertex_dtype(compiled).itemsize + photon.itemsize + 8)
     if method.light_image:
         size += RECORDS_PER_PATH * splat_dtype(lanes).itemsize
     return size

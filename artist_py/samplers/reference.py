@@ -6,14 +6,15 @@ import time
 import numpy as np
 
 from ..core.table import Table
-from ..errors import OptionError
 from ..film.accumulation import add_rows
+from ..integrators.methods import share_of
 from ..integrators.reference import render_reference
 from ..integrators.reference_paths import DoubleSpectrum
-from ..integrators.reference_techniques import Reference, counts_of
+from ..integrators.reference_techniques import Reference, counts_of, samples_in
 from ..transport.merge import Merging
 from ..transport.sensing import Sensing, add_sample
-from .backwards import merge_radius
+from ..transport.shares import Chosen
+from .backwards import merge_radius, share_offsets
 from .stochastic import StochasticSampler
 from .wavelengths import shared_wavelengths
 
@@ -28,13 +29,10 @@ class ReferenceSampler(StochasticSampler):
 
     def __init__(self, compiled, film, threads):
         super().__init__(compiled, film, threads)
-        if compiled.scene.needs.surfaceless_emitters:
-            raise OptionError("render.integrator: reference knows no emitters without a surface, found some")
         render = compiled.graph.render
-        self.settings, self.merging = render.reference, render.merging
+        self.settings, self.merging, self.samples = render.reference, render.merging, render.samples
         self.is_power = render.heuristic == "power"
-        # Weights with dispersion are those of one wavelength (reference_densities.py).
-        self.lanes = 1 if compiled.scene.needs.dispersion else render.hero_count
+        self.lanes = render.hero_count
 
     def iterate(self, iteration, stop=None):
         """Trace, connect and merge all subpaths of an iteration; `False` if `stop` was set meanwhile."""
@@ -63,14 +61,24 @@ class ReferenceSampler(StochasticSampler):
         zero = wavelengths * 0.0
         ratio = zero + 1.0 if compiled.scene.needs.dispersion else None
         n_pixels = self.film.width * self.film.height
-        n_light = n_pixels if settings.light_samples is None else settings.light_samples
+        n_light = settings.light_samples
+        if n_light is None:
+            n_light = math.ceil(n_pixels * self.merging.light_paths)
         radius = merge_radius(compiled, iteration)
+        counts = counts_of(
+            settings.mode, n_pixels * settings.eye_samples, n_light, radius, self.is_power, self.samples,
+            compiled.camera.lens is not None and compiled.camera.clip is None,
+        )  # fmt: skip
         merging = Merging(
             radius,
-            1.0 / (math.pi * radius**2 * max(n_light, 1)),
+            1.0 / counts.vm_area if counts.vm_area > 0.0 else 0.0,
             self.merging.min_normal_cosine,
             True if self.merging.kernel == "epanechnikov" else None,
         )
+        image, merged = (
+            1.0 if each is None else each for each in samples_in(settings.mode, self.samples)[2:]
+        )
+        offsets = share_offsets(self.seed, iteration)
         return Reference(
             scene=compiled.scene,
             camera=compiled.camera,
@@ -79,10 +87,12 @@ class ReferenceSampler(StochasticSampler):
             wavelengths=wavelengths,
             limits=self.limits,
             min_length=settings.min_path_length,
-            counts=counts_of(settings.mode, n_pixels * settings.eye_samples, n_light, radius, self.is_power),
+            counts=counts,
             merging=merging,
             crop=self.crop,
             n_light=n_light,
+            chosen=Chosen(None, share_of(image, offsets[1]), share_of(merged, offsets[2])),
+            n_image_paths=n_light * image,
             seed=self.seed,
             iteration=iteration,
         )

@@ -16,6 +16,7 @@ from .stochastic import StochasticSampler
 from .techniques import TechniqueRecorder, techniques_of_render
 
 PROGRESS_SECONDS = 0.5
+LARGE_PIXELS = 1 << 17  # from here on memory matters more than the second that another process takes to start
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,7 @@ class RenderSettings:
     max_memory_bytes: int | None = None
     techniques: bool = False  # keep an image per technique and path length
     technique_length: int = LONGEST  # longer paths share an image per kind of technique
+    compile_apart: bool = False  # large images: compile in another process, whose memory is given back
 
 
 @dataclass(frozen=True)
@@ -71,6 +73,7 @@ def render(compiled, settings, observer=None, stop=None):
         run.observer.warning(text)
     film = film_of(compiled, settings)
     with sampler_for(compiled, film, settings, run.observer) as sampler:
+        sampler.compiles_apart = settings.compile_apart and film.width * film.height >= LARGE_PIXELS
         compile_seconds = sampler.compile_kernels(run.observer)
         run.observer.started(_plan(compiled, settings))
         run.begun = run.last_save = time.monotonic()
@@ -90,7 +93,7 @@ def sampler_for(compiled, film, settings, observer):
     recorder = None
     light_paths = light_paths_within(compiled, settings, observer.warning)
     if settings.techniques:
-        techniques = techniques_of_render(compiled.graph.render, settings.technique_length)
+        techniques = techniques_of_render(compiled, settings.technique_length)
         recorder = TechniqueRecorder(techniques, film.height, film.width)
     if compiled.graph.render.integrator == "reference":
         return ReferenceSampler(compiled, film, settings.threads)

@@ -13,6 +13,7 @@ from ..integrators.path_tracing import RAYS, SHADOW_RAYS, STOP, Pass, trace_path
 from ..jit import cache_statistics
 from ..transport.roulette import Limits
 from ..transport.sensing import Bands, Sensing
+from .compiling import compile_apart, types_of
 from .wavelengths import resolve_spectra, shared_wavelengths
 
 STRATIFIED_PAIRS = 9  # the film, the lens, the wavelengths and two vertices; see benchmarks/README.md
@@ -37,6 +38,7 @@ class StochasticSampler:
         self.rays = (0, 0)  # closest hits, occlusion
         self.phases, self.counts = {"paths": 0.0, "film": 0.0}, {}
         self.cache_hits = self.cache_misses = 0
+        self.compiles_apart = False  # see compiling.py
         self.pool = ThreadPoolExecutor(threads)
 
     def __enter__(self):
@@ -157,7 +159,7 @@ class StochasticSampler:
         """Compile each `(kernel, arguments)` for the types of its arguments."""
         begun = time.monotonic()
         before = cache_statistics([kernel for kernel, _ in calls])
-        future = self.pool.submit(lambda: [compile_for(kernel, arguments) for kernel, arguments in calls])
+        future = self.pool.submit(self._compile, calls)
         wait([future], ANNOUNCE_SECONDS)
         is_slow = not future.done()
         if is_slow:
@@ -171,7 +173,13 @@ class StochasticSampler:
         self.cache_misses += after[1] - before[1]
         return seconds
 
+    def _compile(self, calls):
+        if self.compiles_apart:
+            compile_apart(calls)
+        for kernel, arguments in calls:
+            compile_for(kernel, arguments)
+
 
 def compile_for(kernel, arguments):
     """Have `kernel` ready for arguments of these types, without calling it."""
-    kernel.compile(tuple(kernel.typeof_pyval(argument) for argument in arguments))
+    kernel.compile(types_of(kernel, arguments))

@@ -6,29 +6,32 @@ from ..core.table import Table
 from ..errors import OptionError
 from ..film.accumulation import add_technique_rows
 from ..film.techniques import TechniqueFilm, techniques_of
-from ..integrators.methods import METHODS
+from ..integrators.methods import METHODS, has_lens_hits, subset_of
 from ..transport.recording import TECHNIQUES, VM, TechniqueTables
 
 BYTES_PER_VALUE = 2 * (4 + 8)  # weighted and unweighted, of one iteration and of all
 
 
-def kinds_of(integrator):
+def kinds_of(integrator, camera, samples):
     """Kinds of techniques that a method has; OptionError for one that does not tell them apart."""
     if integrator == "pt":
         return ("hit", "nee")
     if integrator not in METHODS:
         raise OptionError(f"--techniques: integrator {integrator} keeps no images of techniques")
-    subset = METHODS[integrator]
+    subset = subset_of(integrator, samples)
     # A method without hits still takes those that no other technique finds.
     present = {
-        "hit": True, "nee": subset.nee, "vc": subset.connect, "lt": subset.light_image, "vm": subset.merge
+        "hit": True, "nee": subset.nee, "vc": subset.connect, "lt": subset.light_image,
+        "lens": has_lens_hits(subset, camera), "vm": subset.merge,
     }  # fmt: skip
     return tuple(kind for kind, is_present in present.items() if is_present)
 
 
-def techniques_of_render(render, longest):
-    """All techniques of a render's settings that get images of their own."""
-    return techniques_of(kinds_of(render.integrator), render.max_path_length, longest)
+def techniques_of_render(compiled, longest):
+    """All techniques of the render of a compiled scene that get images of their own."""
+    render = compiled.graph.render
+    kinds = kinds_of(render.integrator, compiled.camera, render.samples)
+    return techniques_of(kinds, render.max_path_length, longest)
 
 
 class TechniqueRecorder:

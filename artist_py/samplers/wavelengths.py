@@ -26,6 +26,19 @@ def shared_wavelengths(nodes, count, seed, iteration):
     return np.array([nodes[index] + (position - index) * width, width * entries / count])
 
 
+def mean_acceptance(nodes, count, tolerance, steps=4096):
+    """Mean over an eye path's wavelengths of P_acc (theory 2.7; transport/rotation.py), in (0, 1].
+
+    It lowers n_vm in the weights of all techniques; merges themselves are divided by the exact probability.
+    """
+    shares = np.linspace(0.0, 1.0, len(nodes))
+    position = (np.arange(steps) + 0.5) / steps
+    wavelength = np.interp(position, shares, nodes)
+    low = np.maximum(np.interp(wavelength - tolerance, nodes, shares), position - 0.5 / count)
+    high = np.minimum(np.interp(wavelength + tolerance, nodes, shares), position + 0.5 / count)
+    return float(count * np.mean(high - low))
+
+
 def resolve_spectra(dense, ior_rows, first, wavelengths):
     """`Spectra` at the given wavelengths only: by bin, and indices of refraction linear between the bins' centres."""
     last = dense.shape[1] - 1

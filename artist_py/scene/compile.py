@@ -178,6 +178,7 @@ def _needs(graph, geometry, materials, emitters, media):
         "environment_images": bool((lights["image"] >= 0).any()),
         "hidden_emitters": bool((lights["visible"] == 0).any()),
         "lobes": bool(used & WITH_LOBES),
+        "sharp": bool(materials.table["is_sharp"].any()),
         "dispersion": bool(materials.table["is_dispersive"].any()),
         "media": media is not None,
         "triangles": bool(kinds & {tables.TRIANGLES, tables.SMOOTH_TRIANGLES}),

@@ -12,6 +12,7 @@ from artist_py.scene.optics import diffuse_transmittance, ior_table, is_dispersi
 from artist_py.scene.spectra import ROUNDING, tabulate
 from artist_py.scene.where import problem
 
+SHARPEST = 1e4  # sr^-1: lobes of a higher density are connected but not merged at (theory 4.6)
 MAX_MEDIA = 127  # slots of transport/media.py have eight bits
 
 KINDS = {
@@ -103,6 +104,7 @@ class MaterialCompiler:
 
     def _fill_phong(self, row, material):
         row["exponent"] = material.exponent
+        row["is_sharp"] = (material.exponent + 1.0) / (2.0 * math.pi) > SHARPEST
         row["specular"] = reflectance_row(self.spectra, material.specular, material, "specular")
         total = self._largest_reflectance(row) + self.spectra.rows[row["specular"]]
         worst = int(np.argmax(total))

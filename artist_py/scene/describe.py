@@ -18,6 +18,7 @@ FEATURES = {
     "thin_dielectric": ("thin panes", "no thin-dielectric material"),
     "pass_through": ("surfaces that light ignores", 'no material of type "none"'),
     "lobes": ("a choice between lobes", "no material has more than one lobe"),
+    "sharp": ("materials that are not merged at", "no lobe is too narrow for merging"),
     "dispersion": (
         "refraction by wavelength, lane densities",
         "no index of refraction depends on wavelength",

@@ -35,12 +35,9 @@ from artist_py.scene.transforms import are_parallel, direction, normalized, poin
 
 FILTER_RADIUS = {"box": 0.5, "tent": 1.0, "gaussian": 1.5, "blackman-harris": 1.5, "mitchell": 2.0}  # pixels
 INTEGRATORS = ("pt", "lt", "bpt", "ppm", "bpm", "vcm", "reference")
-MERGES = (
-    "ppm",
-    "bpm",
-    "vcm",
-    "reference",
-)  # those that need all paths of an iteration to share their wavelengths
+MERGES = ("ppm", "bpm", "vcm", "reference")  # those that merge paths, and care for each other's wavelengths
+ROTATES = ("lt", "bpt", "ppm", "bpm", "vcm")  # those that trace paths from lights
+ONLY_TECHNIQUE = {"lt": "light_image", "ppm": "merging", "bpm": "merging"}  # in [render.samples]
 LONGEST_STORED = 1000  # edges of subpaths whose vertices are stored
 # cd/m2 of a flat spectrum of radiance 1: 683.002 lm/W times the integral of ybar.
 WHITE_LUMINANCE = {"CIE 1931 2": 72983.4866019817, "CIE 1964 10": 79680.2951650147}
@@ -136,6 +133,10 @@ class Merging(Node):
         Number(at_least=0, at_most=1), 0.4
     )  # between the surfaces of photon and vertex
     light_paths: float = key(Number(at_least=0.01, at_most=64), 1.0)  # per pixel
+    correlation: str = key(
+        Choice(("none", "vcm+")), "none"
+    )  # whether weights know that merges at one place share their photons
+    wavelength_tolerance: float = key(Number(above=0), 5.0)  # nm, with wavelengths = "rotate"
 
     def __post_init__(self):
         if self.radius is None and self.radius_pixels is None:
@@ -144,6 +145,24 @@ class Merging(Node):
     def problems(self):
         if self.radius_pixels is not None and self.radius is not None:
             yield "radius_pixels", "expected either radius or radius_pixels, found both"
+
+
+@node
+class Samples(Node):
+    """[render.samples]: how many samples of each technique are taken; 0 leaves it out."""
+
+    next_event: int | None = key(
+        Number(at_least=0, at_most=1024, whole=True), None
+    )  # shadow rays per eye vertex; default: 1
+    connections: float | None = key(
+        Number(at_least=0), None
+    )  # light paths that an eye path is connected to, on average; default: all of its pixel
+    light_image: float | None = key(
+        Number(at_least=0, at_most=1), None
+    )  # share of the light paths that the camera sees; default: all
+    merging: float | None = key(
+        Number(at_least=0, at_most=1), None
+    )  # share of the light paths that are photons; default: all
 
 
 @node
@@ -160,6 +179,19 @@ class BruteForce(Node):
     min_path_length: int = key(_count, 1)  # edges; shorter paths are left out
 
 
+def _wavelength_problem(integrator, wavelengths):
+    """Why an integrator cannot have wavelengths of this kind, or `None`."""
+    allowed = ['"shared"']
+    if integrator not in MERGES:
+        allowed.append('"independent"')
+    if integrator in ROTATES:
+        allowed.append('"rotate"')
+    if show(wavelengths) in allowed:
+        return None
+    reason = "merges paths" if integrator in MERGES else "traces no paths from lights"
+    return f"expected {' or '.join(allowed)}, since {integrator} {reason}, found {show(wavelengths)}"
+
+
 @node
 class Render(Node):
     """[render]: how the image is computed."""
@@ -171,13 +203,16 @@ class Render(Node):
     max_path_length: int = key(_count, 12)  # edges
     roulette_length: int = key(Number(at_least=0, whole=True), 4)  # edges before Russian roulette
     seed: int = key(Number(at_least=0, whole=True, limit=2**63 - 1), 1)
-    wavelengths: str = key(Choice(("independent", "shared")), None)  # default: shared by methods that merge
+    wavelengths: str = key(
+        Choice(("independent", "shared", "rotate")), None
+    )  # default: shared by methods that merge
     hero_count: int = key(Choice((1, 4, 8)), 4)  # wavelengths per path
     wavelength_range: tuple[int, int] | None = key(
         numbers(2, "[first, last]", Number(at_least=300, at_most=830, whole=True)), None
     )  # nm; default: 380 to 780, or from 300 where the scene needs it
     sampler: str = key(Choice(("sobol", "independent")), "sobol")
     heuristic: str = key(Choice(("balance", "power")), "balance")  # of bidirectional methods; power: beta = 2
+    samples: Samples = key(Table(Samples), Samples())
     merging: Merging = key(Table(Merging), Merging())
     reference: BruteForce = key(Table(BruteForce), BruteForce())
 
@@ -186,18 +221,27 @@ class Render(Node):
             object.__setattr__(self, "wavelengths", "shared" if self.integrator in MERGES else "independent")
 
     def problems(self):
-        if self.integrator in MERGES and self.wavelengths != "shared":
-            message = (
-                f'expected "shared", since {self.integrator} merges paths, found {show(self.wavelengths)}'
-            )
-            yield "wavelengths", message
+        if problem := _wavelength_problem(self.integrator, self.wavelengths):
+            yield "wavelengths", problem
+        if self.integrator == "reference" and self.merging.correlation != "none":
+            message = f'expected correlation = "none" with reference, found {show(self.merging.correlation)}'
+            yield "merging", message
         if self.integrator != "pt" and self.max_path_length > LONGEST_STORED:
             message = (
                 f"expected at most {LONGEST_STORED} with {self.integrator}, found {self.max_path_length}"
             )
             yield "max_path_length", message
+        yield from self._problems_of_samples()
         if self.wavelength_range is not None and self.wavelength_range[0] >= self.wavelength_range[1]:
             yield "wavelength_range", expected("first < last", self.wavelength_range)
+
+    def _problems_of_samples(self):
+        only, most = ONLY_TECHNIQUE.get(self.integrator), self.merging.light_paths
+        if only and getattr(self.samples, only) == 0:
+            yield f"samples.{only}", f"expected more than 0, since {self.integrator} has nothing else"
+        if self.integrator != "reference" and (self.samples.connections or 0) > most:
+            wanted = f"at most merging.light_paths = {show(most)}"
+            yield "samples.connections", expected(wanted, self.samples.connections)
 
 
 @node

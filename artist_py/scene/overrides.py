@@ -6,7 +6,7 @@ import re
 from artist_py.errors import Problem, SceneError
 from artist_py.scene.messages import dotted, expected, nearest, show
 
-BARE_WORD = re.compile(r"[A-Za-z][\w./-]*")
+BARE_WORD = re.compile(r"[A-Za-z][\w./+-]*")
 
 
 def apply_overrides(sources, overrides):

@@ -89,6 +89,7 @@ material_dtype = np.dtype(
         ("absorption", "i4"),  # row: conductor's imaginary index of refraction
         ("specular", "i4"),  # row: Phong lobe's reflectance along the normal
         ("is_dispersive", "i4"),
+        ("is_sharp", "i4"),  # 1: its lobe is too narrow to be merged at
         ("medium", "i4"),  # dielectric: its row in `Scene.media`, from 1
         ("texture", "i4"),  # row of the textures that replaces `reflectance`, or -1
         ("ior", "f8"),  # index of refraction of a dielectric or a coat where it does not depend on wavelength
@@ -236,6 +237,7 @@ class Needs(NamedTuple):
     thin_dielectric: bool | None = None
     pass_through: bool | None = None
     lobes: bool | None = None  # a material that chooses between lobes
+    sharp: bool | None = None  # a material that is not merged at, though it has a density
     dispersion: bool | None = None  # a dielectric whose index depends on wavelength
     media: bool | None = None  # dielectrics inside or overlapping dielectrics
     triangles: bool | None = None

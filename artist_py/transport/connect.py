@@ -18,7 +18,12 @@ from ..emitters.emission import emission_over_next_event
 from ..geometry.embree import is_occluded
 from ..geometry.surface import leave_surface, offset_position
 from ..jit import function
-from .mis import bracket, weight_of_connection, weight_of_light_image, weight_of_next_event
+from .mis import (
+    bracket,
+    weight_of_connection,
+    weight_of_light_image,
+    weight_of_next_event,
+)
 from .subpath import adjoint_factor, is_on_side, on_geometric_side
 
 
@@ -117,8 +122,13 @@ def _to_light(emitters, scene, counts, vertex, partial, survival, wavelengths, u
 
 
 @function
-def connect_vertices(scene, counts, eye, eye_partial, eye_survival, light, light_survival, wavelengths):
-    """An eye vertex joined with a stored light vertex, with its weight (1.13); radiance per eye throughput."""
+def connect_vertices(
+    scene, counts, eye, eye_partial, eye_survival, light, light_survival, wavelengths, light_counts
+):
+    """An eye vertex joined with a stored light vertex, with its weight (1.13); radiance per eye throughput.
+
+    `counts` are those for weights at the eye vertex, `light_counts` at the light vertex.
+    """
     nothing = no_connection(wavelengths)
     towards = light.vertex.surface.position - eye.surface.position
     distance_squared = dot(towards, towards)
@@ -138,7 +148,7 @@ def connect_vertices(scene, counts, eye, eye_partial, eye_survival, light, light
     weight = weight_of_connection(
         counts,
         here.pdf_fwd * there.cos_theta / distance_squared,
-        bracket(counts, light.partial, there.pdf_rev),
+        bracket(light_counts, light.partial, there.pdf_rev),
         there.pdf_fwd * here.cos_theta / distance_squared,
         bracket(counts, eye_partial, here.pdf_rev),
     )
@@ -158,5 +168,7 @@ def connect_to_camera(scene, counts, vertex, partial, survival, sensor, waveleng
     if is_blocked(scene, vertex.surface, wi, sensor.position):
         return Connected(black(wavelengths), 1, 0.0)
     camera_density = sensor.pdf_solid_angle * there.cos_theta / distance_squared
-    weight = weight_of_light_image(counts, camera_density, bracket(counts, partial, there.pdf_rev))
+    lens_ratio = there.pdf_fwd * sensor.lens_area / distance_squared
+    light_bracket = bracket(counts, partial, there.pdf_rev)
+    weight = weight_of_light_image(counts, camera_density, light_bracket, lens_ratio)
     return Connected(there.f_cos * (weight * sensor.importance / distance_squared), 1, weight)

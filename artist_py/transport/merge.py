@@ -9,10 +9,11 @@ from ..core.spectra import black
 from ..core.vector import Spectrum, dot
 from ..jit import function
 from .mis import Partial, bracket, weight_of_merge
-from .photon_grid import bucket_of, cell_of, is_in_cell
+from .photon_density import counts_around
+from .photon_grid import bucket_of, cell_of, is_in_pair
 from .recording import VM, record
+from .rotation import Rotation, is_rejected, throughput_in_line
 from .subpath import is_on_side
-from .vertices import load_throughput
 
 
 class Merging(NamedTuple):
@@ -23,6 +24,7 @@ class Merging(NamedTuple):
     # Photons on surfaces that face elsewhere are not of this surface: they would leak through edges and thin walls.
     min_normal_cosine: float
     epanechnikov: bool | None  # K = 2 (1 - d^2 / r^2) / (pi r^2) instead of the constant kernel 1 / (pi r^2)
+    rotation: Rotation | None = None  # absent where all subpaths of an iteration share their wavelengths
 
 
 class Merged(NamedTuple):
@@ -33,28 +35,35 @@ class Merged(NamedTuple):
 
 
 @function
-def merge_at(scene, method, grid, merging, stored, survival, limits, tables, place):
+def merge_at(scene, method, grid, merging, stored, survival, limits, tables, place, window):
     """Sum over the photons within the radius of the stored eye vertex, each with its weight (1.14).
 
-    Each is also noted in the `TechniqueTables`, if there are any.
+    Each is also noted in the `TechniqueTables`, if there are any. `window` says which wavelengths are accepted.
     """
     wavelengths = place.wavelengths
     total, count = black(wavelengths), 0
     p = stored.vertex.surface.position
     i, j, k = _lower_cell(p.x, grid.cell), _lower_cell(p.y, grid.cell), _lower_cell(p.z, grid.cell)
     buckets = grid.starts.shape[0] - 1
+    counts = counts_around(method.density, method.counts, p)
     scale = 1.0 / (merging.radius * merging.radius)
     for corner in range(8):
-        x, y, z = i + (corner & 1), j + ((corner >> 1) & 1), k + (corner >> 2)
-        bucket = bucket_of(x, y, z, buckets)
-        for row in range(grid.starts[bucket], grid.starts[bucket + 1]):
+        x, y, z = corner & 1, j + ((corner >> 1) & 1), k + (corner >> 2)
+        bucket = bucket_of(i + x, y, z, buckets)
+        # The second of a row is gone over with the first, whose bucket it follows, but where buckets begin again.
+        if x == 1 and bucket > 0:
+            continue
+        for row in range(grid.starts[bucket], grid.starts[min(bucket + 2 - x, buckets)]):
             photon = grid.photons[row]
             distance_squared = _distance_squared(photon, p) * scale
-            # A photon counts in its own cell only, since several of the eight may share a bucket.
-            if distance_squared <= 1.0 and is_in_cell(photon.position, x, y, z, grid.cell):
+            # A photon counts in its own row only, since several of the four may share buckets.
+            if distance_squared <= 1.0 and is_in_pair(photon.position, i, y, z, grid.cell):
                 length = photon.length + stored.length
-                if length <= limits.max_length:
-                    merged = _merge(scene, method, merging, photon, stored, survival, wavelengths)
+                throughput = throughput_in_line(window, photon, wavelengths)
+                if length <= limits.max_length and not is_rejected(window, throughput):
+                    merged = _merge(
+                        scene, method, counts, merging, photon, throughput, stored, survival, wavelengths
+                    )
                     value = merged.value * _kernel(merging.epanechnikov, distance_squared)
                     total = total + value
                     count += 1
@@ -91,7 +100,7 @@ def _kernel(epanechnikov, distance_squared):
 
 
 @function
-def _merge(scene, method, merging, photon, stored, survival, wavelengths):
+def _merge(scene, method, counts, merging, photon, throughput, stored, survival, wavelengths):
     vertex = stored.vertex
     normal = load_vec3(photon.normal)
     direction = load_vec3(photon.direction)
@@ -104,14 +113,14 @@ def _merge(scene, method, merging, photon, stored, survival, wavelengths):
         return MergedPhoton(black(wavelengths), 0.0)
     f = evaluate_bsdf(scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, vertex.wo, wi)
     weight = _weight(
-        method.techniques.merge_once, scene, method, photon, stored, material, wi, pdf, survival, wavelengths
+        method.techniques.merge_once, scene, counts, photon, stored, material, wi, pdf, survival, wavelengths
     )
     shading = _shading_factor(scene.needs.smooth_triangles, normal, direction, wi)
-    return MergedPhoton(load_throughput(photon, wavelengths) * f * (weight * shading), weight)
+    return MergedPhoton(throughput * f * (weight * shading), weight)
 
 
 @function
-def _weight(merge_once, scene, method, photon, stored, material, wi, pdf, survival, wavelengths):
+def _weight(merge_once, scene, counts, photon, stored, material, wi, pdf, survival, wavelengths):
     """(1.14), or 1 where merging is the only technique."""
     if merge_once is not None:
         return 1.0
@@ -119,9 +128,9 @@ def _weight(merge_once, scene, method, photon, stored, material, wi, pdf, surviv
     pdf_rev = pdf_bsdf(scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, wi, vertex.wo)
     if not vertex.is_sampled_back:
         pdf_rev = 0.0
-    light = bracket(method.counts, Partial(photon.c, photon.e), pdf * survival)
-    eye = bracket(method.counts, stored.partial, pdf_rev * survival)
-    return weight_of_merge(method.counts, light, eye)
+    light = bracket(counts, Partial(photon.c, photon.e), pdf * survival)
+    eye = bracket(counts, stored.partial, pdf_rev * survival)
+    return weight_of_merge(counts, light, eye)
 
 
 @function

@@ -1,9 +1,9 @@
 """Weights of multiple importance sampling over all techniques of vertex connection and merging.
 
 A path is found by hitting an emitter (hit), next-event estimation (nee), connecting two subpaths (vc), connecting a
-light subpath to the lens (lt), or merging (vm). A subpath carries two numbers per arrived vertex, C and E, from which
-the weight of every technique follows (theory 1.3): C is what all connections that end in the edge just behind would
-do, E everything further away. In streaming form C and E change
+light subpath to the lens (lt), a light subpath that hits the lens (lens), or merging (vm). A subpath carries two
+numbers per arrived vertex, C and E, from which the weight of every technique follows (theory 1.3): C is what all
+connections that end in the edge just behind would do, E everything further away. In streaming form C and E change
 
 * when a direction is sampled: (1.19), `after_scatter` and `after_delta`;
 * on arrival at the next vertex: (1.20), `on_arrival`.
@@ -15,6 +15,7 @@ default; for the power heuristic with beta = 2 sums become Euclidean norms, and 
 import math
 from typing import NamedTuple
 
+from ..bsdf.dispatch import is_mergeable
 from ..core.vector import dot
 from ..jit import function
 
@@ -34,6 +35,29 @@ class Counts(NamedTuple):
     lt: float
     vm_area: float  # a = n_vm pi r^2 of (1.7), n_vm light subpaths in the photon map; render-space units^2
     power: bool | None  # the power heuristic instead of the balance heuristic
+    lens: float | None = None  # absent for a pinhole, or a lens that light does not hit
+
+
+@function
+def counts_of_material(sharp, counts, material):
+    """The counts at a vertex: without merges where the material forbids them, M = 0 of (1.7); see `is_mergeable`."""
+    if sharp is None:
+        return counts
+    return counts_of_sharp(sharp, counts, material)
+
+
+@function
+def counts_of_sharp(sharp, counts, material):
+    """As `counts_of_material`, where some materials are sharp."""
+    if is_mergeable(sharp, material):
+        return counts
+    return with_vm_area(counts, 0.0)
+
+
+@function
+def with_vm_area(counts, area):
+    """The counts with another `vm_area`, their fifth field: a may be local to a vertex (theory 1.4)."""
+    return Counts(*(counts[:4] + (area,) + counts[5:]))  # noqa: RUF005 - numba wants literals and sums of tuples
 
 
 class Partial(NamedTuple):
@@ -130,9 +154,31 @@ def weight_of_next_event(counts, hit_ratio, emission_ratio, eye_bracket):
 
 
 @function
-def weight_of_light_image(counts, camera_density, light_bracket):
-    """(1.16) for a pinhole, or a lens that light does not hit: `camera_density` is p<_{k-1}."""
-    return share(counts.power, counts.lt, camera_density * light_bracket, 0.0)
+def weight_of_light_image(counts, camera_density, light_bracket, lens_ratio):
+    """(1.16): `camera_density` is p<_{k-1} p<_k / pc_k, and `lens_ratio` p>_k / pc_k."""
+    return share(counts.power, counts.lt, camera_density * light_bracket, _times(counts.lens, lens_ratio))
+
+
+@function
+def weight_of_lens_hit(counts, image_ratio, camera_density, partial):
+    """(1.18): `image_ratio` is pc_k / p>_k, 0 where it cannot be; `camera_density` p<_k s<_k."""
+    return share(counts.power, counts.lens, counts.lt * image_ratio, camera_density * partial.e)
+
+
+@function
+def eye_start(counts, camera_density, lens_area):
+    """(1.11) before arrival at the first vertex.
+
+    `camera_density` is that of the direction, sr^-1, `lens_area` the area of the lens times the cosine there.
+    """
+    return Partial(counts.lt / camera_density, _times(counts.lens, lens_area / camera_density))
+
+
+@function
+def _times(count, value):
+    if count is None:
+        return 0.0
+    return count * value
 
 
 @function

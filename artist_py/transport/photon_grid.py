@@ -9,16 +9,20 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..bsdf.dispatch import is_mergeable
 from ..core.affine import load_vec3
 from ..core.table import Table
 from ..jit import function, kernel
+from .rotation import note_offset
+from .shares import is_chosen
 from .vertices import store3
 
 _U64 = np.uint64
 
 
-def photon_dtype(lanes):
-    """Layout of a photon: what a merge reads, and no more."""
+def photon_dtype(lanes, with_offset=False):
+    """Layout of a photon: what a merge reads, and no more; `with_offset` adds what tells its own wavelengths."""
+    own = [("offset", "f4"), ("pixel", "i4")] if with_offset else []
     return np.dtype(
         [
             ("position", "f4", 3),
@@ -26,8 +30,9 @@ def photon_dtype(lanes):
             ("normal", "f4", 3),
             ("throughput", "f4", lanes),
             ("length", "i4"),
-            ("c", "f8"),
-            ("e", "f8"),
+            ("c", "f4"),
+            ("e", "f4"),
+            *own,
         ],
         align=True,
     )
@@ -37,7 +42,7 @@ class Grid(NamedTuple):
     """Photons by bucket: those of bucket b are rows [starts[b], starts[b + 1])."""
 
     photons: Table  # photon_dtype
-    starts: Table  # int64 (buckets + 1,), buckets a power of two
+    starts: Table  # int32 (buckets + 1,), buckets a power of two
     cell: float  # edge of a cell, render-space units
 
 
@@ -49,34 +54,44 @@ def cell_of(x, cell):
 
 @function
 def bucket_of(i, j, k, buckets):
-    """Bucket of a cell (Teschner et al. 2003)."""
-    mixed = (_U64(i) * _U64(73856093)) ^ (_U64(j) * _U64(19349663)) ^ (_U64(k) * _U64(83492791))
+    """Bucket of a cell: a hash of its row (Teschner et al. 2003), and from there one after the other along x.
+
+    So two neighbours in a row are one range of photons, and one place in memory instead of two.
+    """
+    mixed = (_U64(j) * _U64(19349663)) ^ (_U64(k) * _U64(83492791))
     mixed = (mixed ^ (mixed >> _U64(15))) * _U64(0x9E3779B97F4A7C15)
-    return int((mixed >> _U64(20)) & _U64(buckets - 1))
+    return int(((mixed >> _U64(20)) + _U64(i)) & _U64(buckets - 1))
 
 
 @kernel
-def count_photons(grid, records, paths, first, end):
-    """Count the photons of buckets [first, end) into `starts[1 + bucket]`; returns their number."""
+def count_photons(grid, records, paths, share, materials, first, end):
+    """Count the photons of buckets [first, end) into `starts[1 + bucket]`; returns their number.
+
+    `share` is the `Share` of subpaths that are merged with; `materials` the scene's, absent where all are merged at.
+    """
     buckets = grid.starts.shape[0] - 1
     for bucket in range(first, end):
         grid.starts[bucket + 1] = 0
     total = 0
     for index in range(paths.shape[0]):
         path = paths[index]
+        if not is_chosen(share, index):
+            continue
         for i in range(path.n_vertices):
-            bucket = _bucket_of_vertex(records[path.first_vertex + i], grid.cell, buckets)
-            if first <= bucket < end:
+            record = records[path.first_vertex + i]
+            bucket = _bucket_of_vertex(record, grid.cell, buckets)
+            if first <= bucket < end and _is_photon(materials, record):
                 grid.starts[bucket + 1] += 1
                 total += 1
     return total
 
 
 @kernel
-def place_photons(grid, records, paths, first, end, before):
+def place_photons(grid, records, paths, share, materials, first, end, before, offsets):
     """Turn the counts of buckets [first, end) into starts, and copy their photons; `before` lie in earlier buckets.
 
     While photons are placed `starts[b + 1]` is where the next one of b goes; in the end it is where b + 1 starts.
+    `offsets` are those of a `Rotation`, where there is one.
     """
     buckets = grid.starts.shape[0] - 1
     position = before
@@ -86,13 +101,23 @@ def place_photons(grid, records, paths, first, end, before):
         position += count
     for index in range(paths.shape[0]):
         path = paths[index]
+        if not is_chosen(share, index):
+            continue
         for i in range(path.n_vertices):
             record = records[path.first_vertex + i]
             bucket = _bucket_of_vertex(record, grid.cell, buckets)
-            if first <= bucket < end:
+            if first <= bucket < end and _is_photon(materials, record):
                 row = grid.starts[bucket + 1]
                 grid.starts[bucket + 1] = row + 1
                 _copy(record, grid.photons[row])
+                note_offset(offsets, path, grid.photons[row])
+
+
+@function
+def _is_photon(materials, record):
+    if materials is None:
+        return True
+    return is_mergeable(True, materials[record.material])
 
 
 @function
@@ -102,10 +127,10 @@ def _bucket_of_vertex(record, cell, buckets):
 
 
 @function
-def is_in_cell(position, i, j, k, cell):
-    """Whether a photon's position (float32) lies in cell (i, j, k), by the arithmetic that has sorted it."""
+def is_in_pair(position, i, j, k, cell):
+    """Whether a photon's position (float32) lies in cell (i, j, k) or (i + 1, j, k), by the arithmetic that sorts."""
     return (
-        cell_of(np.float32(position[0]), cell) == i
+        0 <= cell_of(np.float32(position[0]), cell) - i <= 1
         and cell_of(np.float32(position[1]), cell) == j
         and cell_of(np.float32(position[2]), cell) == k
     )

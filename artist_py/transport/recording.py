@@ -11,8 +11,8 @@ from ..jit import function
 from .sensing import rgb_of
 
 # Techniques of theory 1.2, in the order of `TECHNIQUES`.
-HIT, NEE, VC, LT, VM = range(5)
-TECHNIQUES = ("hit", "nee", "vc", "lt", "vm")
+HIT, NEE, VC, LT, LENS, VM = range(6)
+TECHNIQUES = ("hit", "nee", "vc", "lt", "lens", "vm")
 
 
 class TechniqueTables(NamedTuple):
@@ -20,7 +20,7 @@ class TechniqueTables(NamedTuple):
 
     weighted: Table
     unweighted: Table
-    # int32 (5, lengths + 2, lengths + 2): the image of a technique, path length and number of edges on the eye's side.
+    # int32 (6, lengths + 2, lengths + 2): the image of a technique, path length and number of edges on the eye's side.
     # The last length stands for all that are longer.
     rows: Table
 

@@ -13,7 +13,7 @@ PROFILE_STEPS = 256  # samples of the filter per pixel
 
 def splat_dtype(lanes, with_technique=False):
     """Layout of a splat of `lanes` wavelengths; `with_technique` adds what images of techniques need."""
-    technique = [("length", "i4"), ("weight", "f4")] if with_technique else []
+    technique = [("technique", "i4"), ("length", "i4"), ("weight", "f4")] if with_technique else []
     return np.dtype([("pixel", "i4"), ("value", "f4", lanes), *technique], align=True)
 
 
@@ -68,10 +68,11 @@ def _value(profile, offset):
 
 
 @function
-def store_splat(tables, pool, thread, record, pixel, value, length, weight):
+def store_splat(tables, pool, thread, record, pixel, value, technique, length, weight):
     """Append a splat to those of the light subpath `record`; room has been made sure of.
 
-    The number of edges of its path and its MIS weight are kept for the `TechniqueTables`, if there are any.
+    Its technique, the number of edges of its path and its MIS weight are kept for the `TechniqueTables`, if there are
+    any.
     """
     row = pool.ends[thread, 0]
     pool.ends[thread, 0] = row + 1
@@ -79,13 +80,14 @@ def store_splat(tables, pool, thread, record, pixel, value, length, weight):
     splat.pixel = pixel
     for i in range(lane_count(value)):
         splat.value[i] = lane(value, i)
-    _store_technique(tables, splat, length, weight)
+    _store_technique(tables, splat, technique, length, weight)
     record.n_splats += 1
 
 
 @function
-def _store_technique(tables, splat, length, weight):
+def _store_technique(tables, splat, technique, length, weight):
     if tables is None:
         return
+    splat.technique = technique
     splat.length = length
     splat.weight = weight

@@ -19,26 +19,33 @@ from .mis import Partial
 from .subpath import Vertex, vertex_on
 
 CHUNK = 4096  # records that a thread takes at a time
+LARGEST = (
+    1e36  # of C and E, whose float32 must not become infinite: infinity times a density of 0 is no number
+)
 NEXT_CHUNK, SHORTAGE = range(2)  # in Pool.state
 
 
-def vertex_dtype(lanes):
-    """Layout of a stored vertex of a subpath with `lanes` wavelengths."""
+def vertex_dtype(lanes, with_shading=True, with_uv=True):
+    """Layout of a stored vertex of a subpath with `lanes` wavelengths.
+
+    Shading normals are left out where all are geometric, surface coordinates where nothing has a texture.
+    """
+    shading = [("shading_normal", "f4", 3)] if with_shading else []
+    uv = [("u", "f4"), ("v", "f4")] if with_uv else []
     return np.dtype(
         [
             ("position", "f8", 3),
             ("normal", "f4", 3),  # geometric
-            ("shading_normal", "f4", 3),
             ("direction", "f4", 3),  # unit, back along the subpath
             ("throughput", "f4", lanes),  # as it arrives
-            ("u", "f4"),
-            ("v", "f4"),
-            ("c", "f8"),  # see mis.py, on arrival
-            ("e", "f8"),
+            ("c", "f4"),  # see mis.py, on arrival
+            ("e", "f4"),
             ("extent", "f4"),
             ("material", "i4"),
             ("length", "i4"),  # edges of the subpath up to here
             ("pixel", "i4"),  # eye vertices: row-major in the window
+            *shading,
+            *uv,
         ],
         align=True,
     )
@@ -51,6 +58,8 @@ class Pool(NamedTuple):
     state: Table  # int64: next free chunk, whether records have run short
     ends: Table  # int64 (threads, 2): next free record and end of each thread's chunk
     used: Table  # int32 (chunks,): how many records of each chunk hold something
+    shading: bool | None = True  # what records have, see `vertex_dtype`
+    uv: bool | None = True
 
 
 @function
@@ -87,18 +96,46 @@ def store_vertex(pool, thread, surface, direction, throughput, partial, length, 
     record = pool.records[row]
     store3(record.position, surface.position)
     store3(record.normal, surface.normal)
-    store3(record.shading_normal, surface.shading_normal)
     store3(record.direction, direction)
     for i in range(lane_count(throughput)):
         record.throughput[i] = lane(throughput, i)
-    record.c = partial.c
-    record.e = partial.e
-    record.u = surface.u
-    record.v = surface.v
+    record.c = min(partial.c, LARGEST)
+    record.e = min(partial.e, LARGEST)
     record.extent = surface.extent
     record.material = surface.material
     record.length = length
     record.pixel = pixel
+    _store_shading(pool.shading, record, surface)
+    _store_uv(pool.uv, record, surface)
+
+
+@function
+def _store_shading(needed, record, surface):
+    if needed is None:
+        return
+    store3(record.shading_normal, surface.shading_normal)
+
+
+@function
+def _store_uv(needed, record, surface):
+    if needed is None:
+        return
+    record.u = surface.u
+    record.v = surface.v
+
+
+@function
+def _load_shading(needed, record, normal):
+    if needed is None:
+        return normal
+    return load_vec3(record.shading_normal)
+
+
+@function
+def _load_uv(needed, record):
+    if needed is None:
+        return 0.0, 0.0
+    return float(record.u), float(record.v)
 
 
 class StoredVertex(NamedTuple):
@@ -115,14 +152,15 @@ class StoredVertex(NamedTuple):
 def load_vertex(scene, record, zero, wavelengths):
     """The `StoredVertex` of a record, of a subpath with these `wavelengths`; `zero` has as many."""
     normal = load_vec3(record.normal)
-    shading = load_vec3(record.shading_normal)
+    shading = _load_shading(scene.needs.smooth_triangles, record, normal)
+    u, v = _load_uv(scene.needs.textures, record)
     direction = load_vec3(record.direction)
     surface = Surface(
         load_vec3(record.position),
         normal,
         shading,
-        float(record.u),
-        float(record.v),
+        u,
+        v,
         float(record.extent),
         record.material,
         -1,

@@ -4,15 +4,16 @@ Nothing is evaluated twice: the functions that kernels call are replaced by ones
 vertices and photons are float64 here, so that what is read again is what was stored.
 """
 
+from types import SimpleNamespace
 from typing import NamedTuple
 
 import numpy as np
 
 from artist_py.cameras.perspective import camera_ray, sample_film
-from artist_py.cameras.sensor import pdf_camera_direction
+from artist_py.cameras.sensor import pdf_camera_direction, projected_lens_area
 from artist_py.core.rng import random_pair, stream_of
 from artist_py.core.table import Table
-from artist_py.integrators import eye_subpath, light_subpath
+from artist_py.integrators import eye_subpath, lens_hits, light_subpath
 from artist_py.integrators.methods import method_of
 from artist_py.integrators.pair import LIGHT_SEED, Setup, Stores, path_dtype
 from artist_py.integrators.path_tracing import FILM, Pass, lens_numbers
@@ -21,18 +22,22 @@ from artist_py.integrators.reference_paths import (
     EmitterHit,
     FullPath,
     Subpath,
+    background_hit,
     connecting_edge,
     edge_to,
     end_node,
     joined,
+    lane_left,
+    light_node,
     merged,
     node_at,
     path_of_hit,
     up_to,
 )
 from artist_py.transport import connect, merge, photon_grid
+from artist_py.transport.local_counts import counts_at
 from artist_py.transport.merge import Merging
-from artist_py.transport.mis import Partial
+from artist_py.transport.mis import eye_start
 from artist_py.transport.recording import Place
 from artist_py.transport.roulette import Limits, local_survival
 from artist_py.transport.sensing import Sensing
@@ -69,7 +74,7 @@ def pool_of(dtype):
     )
 
 
-def counts_in(method, counts):
+def counts_in(method, counts, hits_everything=None):
     """The method with other counts; what has none is absent."""
     techniques = method.techniques._replace(
         nee=counts.nee > 0 or None,
@@ -78,19 +83,22 @@ def counts_in(method, counts):
         merge=counts.vm_area > 0 or None,
         light_paths=True,
     )
-    return method._replace(techniques=techniques, counts=counts, hits_everything=counts.hit > 0)
+    if hits_everything is None:
+        hits_everything = counts.hit > 0
+    return method._replace(techniques=techniques, counts=counts, hits_everything=hits_everything)
 
 
-def setup_of(compiled, counts, wavelengths):
+def setup_of(compiled, counts, wavelengths, hits_everything=None):
     """The `Setup` of the kernels, for one light and one eye subpath at a time."""
     graph = compiled.graph
     width, height = graph.film.resolution
-    sensing = Sensing(wavelengths * 0.0, None, Table(compiled.nodes), None, None)
+    ratio = wavelengths * 0.0 + 1.0 if compiled.scene.needs.dispersion else None
+    sensing = Sensing(wavelengths * 0.0, ratio, Table(compiled.nodes), None, None)
     work = Pass(SEED, 0, 0, (0, width, 0, height), width, None)
     lanes = len(wavelengths.values)
     light, eye = pool_of(vertex_dtype(lanes)), pool_of(vertex_dtype(lanes))
     stores = Stores(light, eye, pool_of(splat_dtype(lanes)), Table(np.zeros(1, path_dtype)), None, None)
-    method = counts_in(method_of("vcm", width * height, 1.0, 0.0, 1.0), counts)
+    method = counts_in(method_of("vcm", width * height, 1.0, 0.0, 1.0), counts, hits_everything)
     limits = Limits(graph.render.max_path_length, 0)
     return Setup(
         compiled.scene, compiled.camera, compiled.pixel_filter, sensing, limits, work, method, stores
@@ -100,10 +108,10 @@ def setup_of(compiled, counts, wavelengths):
 class Recorder:
     """Traces pairs of subpaths and notes every weight; `patch` is pytest's monkeypatch."""
 
-    def __init__(self, patch, compiled, counts, lanes=1):
+    def __init__(self, patch, compiled, counts, lanes=1, hits_everything=None):
         first, last = compiled.wavelength_range
         self.wavelengths = DoubleSpectrum(first + (last - first) * (np.arange(lanes) + 0.5) / lanes)
-        self.setup, self.patch = setup_of(compiled, counts, self.wavelengths), patch
+        self.setup, self.patch = setup_of(compiled, counts, self.wavelengths, hits_everything), patch
         self.found, self.light, self.eye, self.walk = [], None, None, None
         self._listen_to_walks()
         self._listen_to_connections()
@@ -134,7 +142,7 @@ class Recorder:
             self._listen(module, "scatter", self._leave)
 
     def _begin_light(self, start):
-        node = end_node(start.position, start.normal, start.extent, self.emitter)
+        node = light_node(self.setup.scene, self.emitter, start)
         self.walk = self.light = Subpath([node], [], [], [])
 
     def _arrive(self, vertex, scene, surface, path, wavelengths):
@@ -142,13 +150,16 @@ class Recorder:
         self.walk.nodes.append(node_at(scene, vertex, path.media, wavelengths))
 
     def _leave(self, step, *_):
-        self.walk.nodes[-1] = self.walk.nodes[-1]._replace(is_delta=step.is_delta)
+        lane = lane_left(step.path)
+        self.walk.nodes[-1] = self.walk.nodes[-1]._replace(is_delta=step.is_delta, lane=lane)
 
     # --- connections
 
     def _listen_to_connections(self):
         self._before(light_subpath, "connect_to_camera", lambda *a: setattr(self, "sensor", a[5]))
         self._listen(connect, "weight_of_light_image", self._note_light_image)
+        self._listen(lens_hits, "hit_lens", self._meet_lens)
+        self._listen(lens_hits, "weight_of_lens_hit", self._note_lens_hit)
         self._listen(connect, "choose_emitter", lambda index, *_: setattr(self, "emitter", index))
         self._before(connect, "emission_over_next_event", lambda *a: setattr(self, "point", a[2]))
         self._listen(connect, "weight_of_next_event", self._note_next_event)
@@ -171,8 +182,18 @@ class Recorder:
         path = joined(self.light.nodes, self.light.edges, edge, [lens], [])
         self._note(("lt", len(path.edges)), weight, path)
 
+    def _meet_lens(self, hit, camera, origin, direction):
+        point = end_node(origin + direction * hit.t, camera.forward, 0.0, -1)
+        path = SimpleNamespace(direction=direction)
+        self.lens = point, edge_to(point.surface, path, self.light.nodes[-1])
+
+    def _note_lens_hit(self, weight, *_):
+        lens, edge = self.lens
+        path = joined(self.light.nodes, self.light.edges, edge, [lens], [])
+        self._note(("lens", len(path.edges) + 1), weight, path)
+
     def _note_next_event(self, weight, *_):
-        light = end_node(self.point.position, self.point.normal, self.point.extent, self.emitter)
+        light = light_node(self.setup.scene, self.emitter, self.point)
         edge = connecting_edge(light, self.eye.nodes[-1])
         self._note(("nee", 1), weight, joined([light], [], edge, self.eye.nodes, self.eye.edges))
 
@@ -187,6 +208,7 @@ class Recorder:
 
     def _listen_to_hits(self):
         self._before(eye_subpath, "emission_hit", self._note_surface)
+        self._before(eye_subpath, "_background_weight", self._note_background)
         self._listen(eye_subpath, "emission_hit", self._note_only_way)
         self._listen(eye_subpath, "weight_of_hit", lambda weight, *_: self._note_hit(weight))
 
@@ -194,8 +216,13 @@ class Recorder:
         edge = edge_to(surface, path, self.eye.nodes[-1])
         self.hit = EmitterHit(len(self.eye.nodes), surface, edge, None)
 
+    def _note_background(self, scene, method, emitter, path, *_):
+        records = scene.emitters.records
+        number = next(i for i in range(records.shape[0]) if records[i] == emitter)
+        self.hit = background_hit(scene, self.eye, path, number)
+
     def _note_only_way(self, radiance, scene, method, surface, path, length, partial, is_only_way, *_):
-        if not method.hits_everything and surface.emitter >= 0:
+        if surface.emitter >= 0 and not eye_subpath.is_hit_weighed(method, is_only_way):
             self._note_hit(1.0 if is_only_way else 0.0)
 
     def _note_hit(self, weight):
@@ -223,10 +250,9 @@ class Recorder:
         self.walk = self.eye = Subpath([end_node(lens_point, camera.forward, 0.0, -1)], [], [], [])
         path = seen_from(start_path(origin, direction, setup.sensing, camera.media), lens_point)
         density = pdf_camera_direction(camera, setup.method.n_pixels, direction)
+        start = eye_start(counts, density, projected_lens_area(camera, direction))
         place = Place(y, x, self.wavelengths, self.wavelengths)
-        eye_subpath.trace_eye_subpath(
-            setup, 0, 0, stream, place, path, Partial(counts.lt / density, 0.0), film_weight
-        )
+        eye_subpath.trace_eye_subpath(setup, 0, 0, stream, place, path, start, film_weight)
 
     def _merge_all(self):
         """Merge every stored eye vertex with every photon, near or not: weights do not ask."""
@@ -241,13 +267,18 @@ class Recorder:
 
     def _merge(self, stored, survival, light):
         setup, i, j = self.setup, stored.length, light.length
+        if not self.light.nodes[j].can_merge:  # such are no photons
+            return
         photon = np.zeros(1, doubled(photon_grid.photon_dtype(len(self.wavelengths.values)))).view(
             np.recarray
         )
         photon_grid._copy(light, photon[0])
         self.merge_weights = []
-        constants = Merging(1.0, 1.0, 0.0, None)
-        merge._merge(setup.scene, setup.method, constants, photon[0], stored, survival, self.wavelengths)
+        counts = counts_at(setup.scene, setup.method, setup.method.counts, stored.vertex.surface)
+        constants, flux = Merging(1.0, 1.0, 0.0, None), self.wavelengths
+        merge._merge(
+            setup.scene, setup.method, counts, constants, photon[0], flux, stored, survival, self.wavelengths
+        )
         for weight in self.merge_weights:
             path = merged(*up_to(self.light, j), *up_to(self.eye, i))
             self._note(("vm", j), weight, path)

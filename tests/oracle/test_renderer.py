@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from oracle_scenes import CORNELL
-from rendering import FALSE_ALARM, GREEN, MONOCHROME, assert_equals, radiance
+from oracle_scenes import CORNELL, LIGHTS, MATERIALS
+from rendering import FALSE_ALARM, GREEN, MONOCHROME, assert_equals, look, radiance, scene, shape, with_render
 from scipy import stats
 
 import artist_py
@@ -57,11 +57,50 @@ def quarters(compiled, iterations):
 def test_same_image_as_the_kernels(mode, other):
     """Merges have the same radius and so the same bias."""
     found = quarters(cornell("reference", **{"render.reference.mode": mode}), 20)
-    expected = quarters(cornell(other), 400)
+    assert_agree(found, quarters(cornell(other), 400))
+
+
+def assert_agree(found, expected):
+    """Means over iterations are the same in every quarter, by Welch's test."""
     error = np.sqrt(found.var(axis=0, ddof=1) / len(found) + expected.var(axis=0, ddof=1) / len(expected))
     assert np.all(error < PRECISION * expected.mean(axis=0))
     p = stats.ttest_ind(found, expected, equal_var=False).pvalue
     assert p.min() > FALSE_ALARM / p.size
+
+
+def corner(shapes, emitters=(), lanes=1):
+    """A floor and a rough wall, under an open sky."""
+    used = {each["material"] for each in shapes if "material" in each} | {"white", "rough"}
+    return scene(
+        [
+            shape("rectangle", "white", corner=[-2, -2, -1], edges=[[4, 0, 0], [0, 4, 0]]),
+            shape("rectangle", "rough", corner=[-2, 1.5, -1], edges=[[4, 0, 0], [0, 0, 2]]),
+            *shapes,
+        ],
+        emitters=emitters,
+        materials={name: MATERIALS[name] for name in sorted(used)},
+        camera=look([0, -3, 0.5], [0, 0.5, -0.8], 30.0),
+        film={"resolution": [8, 8]},
+        render={
+            "integrator": "reference", "max_path_length": 4, "hero_count": lanes, "merging": {"radius": 0.05},
+            "wavelength_range": MONOCHROME if lanes == 1 else [400, 700], "wavelengths": "shared",
+        },
+    )  # fmt: skip
+
+
+def test_emitters_without_a_surface():
+    """A point, a spot, directional light, a sun and a sky at once: the path tracer sees the same."""
+    compiled = corner([], LIGHTS)
+    expected = quarters(with_render(compiled, integrator="pt", roulette_length=9, seed=2), 600)
+    assert_agree(quarters(compiled, 16), expected)
+
+
+def test_dispersion_at_several_wavelengths():
+    """A ball of flint before the wall; what it refracts goes on with one of four wavelengths."""
+    lamp = shape("sphere", center=[0.2, -0.6, 0.6], radius=0.5, emission=3)
+    compiled = corner([shape("sphere", "flint", center=[0, 0.4, -0.7], radius=0.6), lamp], (), 4)
+    expected = quarters(with_render(compiled, integrator="pt", seed=2), 1200)
+    assert_agree(quarters(compiled, 24), expected)
 
 
 @pytest.fixture(scope="module")

@@ -10,6 +10,7 @@ import math
 
 import oracle_scenes
 import pytest
+import recording
 from recording import Recorder
 from recurrences import Case, all_weights
 
@@ -36,11 +37,21 @@ SUBSETS = {
     "many": Counts(1, 4, 2, 3, 7 * VM, None),
     "parts": Counts(1, 0.7, 0.25, 0.31, 0.4 * VM, None),
 }
+# With light that hits the lens.
+WITH_LENS = {
+    "lens": Counts(1, 0, 0, 0, 0, None, 1),
+    "pt+lens": Counts(1, 1, 0, 0, 0, None, 0.5),
+    "lt+lens": Counts(1, 0, 0, 1, 0, None, 1),
+    "bpt": Counts(1, 1, 1, 1, 0, None, 1),
+    "vcm": Counts(1, 1, 1, 1, VM, None, 1),
+    "parts": Counts(1, 0.7, 0.25, 0.31, 0.4 * VM, None, 0.6),
+}
 EXPECTED = {
     "hit": lambda counts: True,
     "nee": lambda counts: counts.nee > 0,
     "vc": lambda counts: counts.vc > 0,
     "lt": lambda counts: counts.lt > 0,
+    "lens": lambda counts: counts.lens is not None,
     "vm": lambda counts: counts.vm_area > 0,
 }
 
@@ -50,9 +61,9 @@ def scene_named(name):
     return oracle_scenes.SCENES[name]()
 
 
-def record(patch, name, counts, pairs, lanes=1):
+def record(patch, name, counts, pairs, lanes=1, hits_everything=None):
     """A `Recorder` that has traced so many pairs over the image."""
-    recorder = Recorder(patch, scene_named(name), counts, lanes)
+    recorder = Recorder(patch, scene_named(name), counts, lanes, hits_everything)
     for pair in range(pairs):
         recorder.trace(pair, pair % 8, 5 * pair // 2 % 8)
     return recorder
@@ -61,8 +72,9 @@ def record(patch, name, counts, pairs, lanes=1):
 def brute_force(recorder, path):
     setup = recorder.setup
     return technique_densities(
-        setup.scene, setup.camera, setup.method.counts, setup.method.n_pixels, recorder.wavelengths, path
-    )
+        setup.scene, setup.camera, setup.method.counts, setup.method.n_pixels, recorder.wavelengths, path,
+        setup.method.hits_everything or setup.method.counts.lens is None,
+    )  # fmt: skip
 
 
 def deviations(recorder):
@@ -89,10 +101,11 @@ def kinds_of(recorder):
 
 
 @pytest.mark.parametrize("power", [None, True], ids=["balance", "power"])
-@pytest.mark.parametrize("name", oracle_scenes.SCENES)
+@pytest.mark.parametrize("name", [name for name in oracle_scenes.SCENES if name != "lights on lens"])
 def test_all_techniques(monkeypatch, name, power):
-    pairs = 150 if name == "far" else 50
-    recorder = record(monkeypatch, name, SUBSETS["parts"]._replace(power=power), pairs)
+    pairs = 150 if name in {"far", "dispersive"} else 50
+    lanes = scene_named(name).graph.render.hero_count if name == "dispersive" else 1
+    recorder = record(monkeypatch, name, SUBSETS["parts"]._replace(power=power), pairs, lanes)
     assert kinds_of(recorder) >= {"nee", "vc", "lt", "vm"}
     assert_exact(recorder, 60)
 
@@ -104,6 +117,50 @@ def test_every_subset(monkeypatch, subset):
     wanted = {kind for kind, is_expected in EXPECTED.items() if is_expected(counts)}
     assert kinds_of(recorder) | {"hit"} == wanted
     assert_exact(recorder, 3)
+
+
+@pytest.mark.parametrize("subset", ["bpm", "vcm", "parts"])
+def test_sharp_lobes_are_not_merged_at(monkeypatch, subset):
+    recorder = record(monkeypatch, "sharp", SUBSETS[subset], 40)
+    sharp = [
+        [node.can_join and not node.can_merge for node in found.path.nodes[1:-1]] for found in recorder.found
+    ]
+    assert sum(map(any, sharp)) >= 10
+    assert any(map(all, sharp))
+    assert_exact(recorder, 60)
+
+
+@pytest.mark.parametrize("power", [None, True], ids=["balance", "power"])
+@pytest.mark.parametrize("subset", WITH_LENS)
+def test_lens_hits(monkeypatch, subset, power):
+    counts = WITH_LENS[subset]._replace(power=power)
+    recorder = record(monkeypatch, "wide lens", counts, 80)
+    assert kinds_of(recorder) == {kind for kind, is_expected in EXPECTED.items() if is_expected(counts)}
+    lens_paths = [found.path for found in recorder.found if found.technique[0] == "lens"]
+    assert len(lens_paths) >= 10
+    assert any(path.nodes[-2].is_delta for path in lens_paths)
+    assert any(len(path.edges) == 1 for path in lens_paths)
+    assert_exact(recorder, 20)
+
+
+def test_lens_hits_of_emitters_without_a_surface(monkeypatch):
+    """Such are not seen themselves, only what they light and their images in mirrors."""
+    recorder = record(monkeypatch, "lights on lens", WITH_LENS["parts"], 150)
+    lens_paths = [found.path for found in recorder.found if found.technique[0] == "lens"]
+    assert len(lens_paths) >= 5
+    assert min(len(path.edges) for path in lens_paths) == 2
+    assert_exact(recorder, 100)
+
+
+@pytest.mark.parametrize("power", [None, True], ids=["balance", "power"])
+def test_lens_hits_of_light_tracing(monkeypatch, power):
+    """Hits take part only where the vertex before the lens cannot be connected to it."""
+    counts = WITH_LENS["lt+lens"]._replace(power=power)
+    recorder = record(monkeypatch, "wide lens", counts, 120, hits_everything=False)
+    hits = [found for found in recorder.found if found.technique[0] == "hit" and 0.0 < found.weight < 1.0]
+    assert any(found.path.nodes[-2].is_delta for found in hits)
+    assert kinds_of(recorder) == {"hit", "lt", "lens"}
+    assert_exact(recorder, 60)
 
 
 @pytest.mark.parametrize("radius", [1e-7, 1e-3, 0.1, 1e4])
@@ -121,6 +178,15 @@ def test_roulette_is_part_of_the_densities(monkeypatch):
     forget = [found._replace(path=found.path._replace(nodes=certain(found.path))) for found in recorder.found]
     recorder.found = forget
     assert deviations(recorder)[0][0] > 0.1
+
+
+def test_lens_hits_are_part_of_the_eye_subpath(monkeypatch):
+    """Eye subpaths that know nothing of lens hits weigh the other techniques too much."""
+    monkeypatch.setattr(
+        recording, "eye_start", lambda counts, density, area: mis.Partial(counts.lt / density, 0.0)
+    )
+    recorder = record(monkeypatch, "wide lens", WITH_LENS["vcm"], 20)
+    assert deviations(recorder)[0][0] > 0.01
 
 
 def certain(path):
@@ -151,10 +217,16 @@ def test_length_limit(monkeypatch):
 
 
 @pytest.mark.parametrize("power", [None, True], ids=["balance", "power"])
-@pytest.mark.parametrize("subset", ["bpt", "pt+vm", "vcm", "parts"])
-def test_weights_sum_to_one(monkeypatch, subset, power):
+@pytest.mark.parametrize(
+    ("name", "counts"),
+    [
+        *(("mixed", SUBSETS[name]) for name in ("bpt", "pt+vm", "vcm", "parts")),
+        ("wide lens", WITH_LENS["parts"]),
+    ],
+)
+def test_weights_sum_to_one(monkeypatch, name, counts, power):
     """Of all techniques that can find a path, by the recurrences along that path from both ends."""
-    recorder = record(monkeypatch, "mixed", SUBSETS[subset]._replace(power=power), 20)
+    recorder = record(monkeypatch, name, counts._replace(power=power), 20)
     summed = 0
     for _, _, path in recorder.found:
         if len(path.edges) > 1:

@@ -1,5 +1,7 @@
 """Images of techniques: which there are, how they are kept, and how they are shown."""
 
+from types import SimpleNamespace
+
 import numba
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ from artist_py.film.reading import read_image
 from artist_py.film.technique_files import check_techniques, write_techniques
 from artist_py.film.techniques import KINDS, Technique, TechniqueImages, techniques_of
 from artist_py.film.tonemap import ToneMapping
+from artist_py.integrators.methods import ALL, Samples
 from artist_py.integrators.path_tracing import trace_paths
 from artist_py.samplers.memory import memory_estimate
 from artist_py.samplers.render_job import RenderSettings, render
@@ -38,18 +41,20 @@ class TestWhichThereAre:
 
     def test_of_a_length(self):
         names = [each.name for each in techniques_of(KINDS, 4) if each.length == 4]
-        assert names == ["hit", "nee", "vc_s2_t3", "vc_s3_t2", "lt", "vm_m1", "vm_m2", "vm_m3"]
+        assert names == [
+            "hit", "nee", "vc_s2_t3", "vc_s3_t2", "lt", "lens", "vm_m1", "vm_m2", "vm_m3"
+        ]  # fmt: skip
 
     @pytest.mark.parametrize("length", range(2, 9))
     def test_vertices(self, length):
-        """All but merges have a light and an eye subpath that make up the k + 1 vertices, s from 0 to k."""
+        """All but merges have a light and an eye subpath that make up the k + 1 vertices, s from 0 to k + 1."""
         found = [each for each in techniques_of(KINDS, 8) if each.length == length]
-        assert [each.s for each in found if each.kind != "vm"] == list(range(length + 1))
+        assert [each.s for each in found if each.kind != "vm"] == list(range(length + 2))
         assert all(each.s + each.t == length + 1 for each in found if each.kind != "vm")
         assert [each.m for each in found if each.kind == "vm"] == list(range(1, length))
 
     def test_emitters_that_are_seen(self):
-        assert techniques_of(KINDS, 1) == (Technique("hit", 1, 0, 2),)
+        assert techniques_of(KINDS, 1) == (Technique("hit", 1, 0, 2), Technique("lens", 1, 2, 0))
 
     def test_longer_paths_share(self):
         techniques = techniques_of(("hit", "vm"), 30, 2)
@@ -58,11 +63,18 @@ class TestWhichThereAre:
 
     def test_of_methods(self):
         assert TECHNIQUES == KINDS
-        assert kinds_of("pt") == ("hit", "nee")
-        assert kinds_of("ppm") == ("hit", "vm")
-        assert kinds_of("vcm") == KINDS
+        pinhole, lens, far = (
+            SimpleNamespace(lens=lens, clip=clip) for lens, clip in ((None, None), (1, None), (1, 9.0))
+        )
+        assert kinds_of("pt", lens, ALL) == ("hit", "nee")
+        assert kinds_of("ppm", lens, ALL) == ("hit", "vm")
+        assert kinds_of("lt", lens, ALL) == ("hit", "lt", "lens")
+        assert kinds_of("vcm", lens, ALL) == KINDS
+        assert kinds_of("vcm", pinhole, ALL) == kinds_of("vcm", far, ALL) == ("hit", "nee", "vc", "lt", "vm")
         with pytest.raises(OptionError, match="reference"):
-            kinds_of("reference")
+            kinds_of("reference", pinhole, ALL)
+        few = Samples(next_event=0, connections=0, light_image=0)
+        assert kinds_of("vcm", lens, few) == ("hit", "vm")
 
 
 class TestRows:
@@ -156,9 +168,9 @@ class TestRenders:
 
     def test_memory(self, compiled):
         settings = RenderSettings(iterations=1, techniques=True)
-        n_images = len(techniques_of_render(compiled.graph.render, 8))
+        n_images = len(techniques_of_render(compiled, 8))
         assert n_images == 1 + 7 * 2 + 2
-        stored = TechniqueRecorder(techniques_of_render(compiled.graph.render, 8), 6, 8)
+        stored = TechniqueRecorder(techniques_of_render(compiled, 8), 6, 8)
         arrays = [*stored.tables[:2], stored.film.weighted, stored.film.unweighted]
         assert memory_estimate(compiled, settings)["techniques"] == sum(each.nbytes for each in arrays)
         assert memory_estimate(compiled, RenderSettings(iterations=1))["techniques"] == 0
@@ -171,7 +183,7 @@ class TestRenders:
     @pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
     def test_no_code_without(self, compiled):
         """The LLVM names every function that was compiled for a kernel, also where it was inlined."""
-        film = TechniqueRecorder(techniques_of_render(compiled.graph.render, 8), 6, 8).film
+        film = TechniqueRecorder(techniques_of_render(compiled, 8), 6, 8).film
         code = {}
         for wanted in (True, False):
             recorder = TechniqueRecorder(film.techniques, 6, 8) if wanted else None
@@ -255,7 +267,7 @@ class TestContactSheet:
         lit = (sheet[..., 1] >= 0.5) & (sheet[..., 0] == 0)
         step = (sheet.shape[0] - GAP) // 3
         for row, n_lit, last in ((0, 0, 0), (1, 2, 3.8), (2, 2, 4.3)):
-            # The sum and the light image; the latter is the last of its row, which is centred above 4 columns.
+            # The sum and the light image; of its row, which is centred above 5 columns, only lens hits come after it.
             below = lit[GAP + row * step : GAP + row * step + WIDTH]
             assert below.sum() == n_lit * WIDTH * WIDTH
             if n_lit:

@@ -2,6 +2,9 @@
 
 They take part as if they had an area of 1 that everybody sees frontally: "density" per area 1, cosine 1. All these
 factors cancel (theory 1.5), and the intensity, W sr^-1 nm^-1, takes the place of the radiance.
+
+Rays end and begin beside the point by the rounding error of its place: where it lies on a surface, that must hide it
+from one side only.
 """
 
 import math
@@ -10,6 +13,7 @@ from ..core.affine import load_vec3
 from ..core.frame import frame_around, to_world
 from ..core.vector import dot
 from ..core.warp import square_to_cone, square_to_sphere
+from ..geometry.surface import largest
 from ..jit import function
 from .area import no_emitter_point
 from .types import Emission, EmitterPoint, no_emission
@@ -25,7 +29,9 @@ def sample_point(needed, emitter, reference):
     distance_squared = dot(away, away)
     if not distance_squared > 0.0:
         return no_emitter_point()
-    return EmitterPoint(position, away * (1.0 / math.sqrt(distance_squared)), distance_squared, 0.0)
+    return EmitterPoint(
+        position, away * (1.0 / math.sqrt(distance_squared)), distance_squared, largest(position)
+    )
 
 
 @function
@@ -67,7 +73,8 @@ def emit_from_point(needed, emitter, u, v):
         return no_emission()
     direction = square_to_sphere(u, v)
     density = emitter.pdf_select * pdf_direction_of_point(emitter)
-    return Emission(load_vec3(emitter.origin), direction, direction, density, 1.0, 0.0, 0.0)
+    position = load_vec3(emitter.origin)
+    return Emission(position, direction, direction, density, 1.0, 0.0, largest(position))
 
 
 @function
@@ -78,7 +85,8 @@ def emit_from_spot(needed, emitter, u, v):
     frame = frame_around(load_vec3(emitter.normal))
     direction = to_world(frame, square_to_cone(u, v, emitter.cone))
     density = emitter.pdf_select * pdf_direction_of_point(emitter)
-    return Emission(load_vec3(emitter.origin), direction, direction, density, 1.0, 0.0, 0.0)
+    position = load_vec3(emitter.origin)
+    return Emission(position, direction, direction, density, 1.0, 0.0, largest(position))
 
 
 @function

@@ -46,7 +46,11 @@ def smape(image, reference):
 
 
 def relmse_of_variance(variance, mean):
-    """The relMSE that an unbiased image expects against the truth, from the variance of its values."""
+    """What noise of this variance adds to a relMSE in which `mean` stands in the denominators.
+
+    With the true mean that is the error that an unbiased image expects. With the image's own, where a firefly hides its
+    own error, it is what a reference adds to the error of those that are compared with it.
+    """
     return float(np.mean(_double(variance) / (_double(mean) ** 2 + RELATIVE_OFFSET)))
 
 

@@ -110,7 +110,7 @@ def converge(
     for repeat in range(repeats):
         for entry in entries:
             for row in _rows(run, compiled[entry.label], entry, repeat, threads, observer, stop):
-                observer.note(_line(row, repeats))
+                observer.note(_line(row, repeats, axis))
             if stop is not None and stop.is_set():
                 run.is_interrupted = True
                 return run
@@ -157,10 +157,11 @@ def _row(snapshot, label, repeat, seed, reference):
     )
 
 
-def _line(row, repeats):
+def _line(row, repeats, axis):
     below = ", below what the reference can tell" if row.is_below_reference else ""
+    seconds = f"{row.cpu_seconds:.3g} CPU s" if axis == "cpu" else f"{row.wall_seconds:.3g} s"
     return (
-        f"{row.entry}, repeat {row.repeat + 1} of {repeats}: {row.wall_seconds:.3g} s, {row.iterations} iterations, "
+        f"{row.entry}, repeat {row.repeat + 1} of {repeats}: {seconds}, {row.iterations} iterations, "
         f"relMSE {row.relmse:.3g}, sMAPE {row.smape:.3g}{below}"
     )
 

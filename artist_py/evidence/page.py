@@ -14,16 +14,16 @@ from artist_py.compare.heat import DECADES, RAMP, heat_colors, heat_range
 from artist_py.compare.metrics import relative_squared_error
 from artist_py.errors import OptionError
 from artist_py.evidence.plots import COLORS, inline_svg
-from artist_py.evidence.statistics import slopes, speed_up, summary
+from artist_py.evidence.statistics import clock_of, slopes, speed_up, summary
 from artist_py.evidence.words import (
     band_text,
-    duration,
     figures,
     mean_text,
     memory,
     notes,
     slope_text,
     subtitle,
+    time_text,
 )
 from artist_py.film.color import decode_srgb
 from artist_py.film.output import write_display
@@ -85,9 +85,8 @@ class Pictures:
             if row.repeat == 0 and row.mark in self.marks:
                 place = f"{number}/{row.mark:g}"
                 self.urls[f"image/{place}"] = self._shown(self.convergence.images[label, row.mark])
-                self.captions[place] = (
-                    f"{duration(row.wall_seconds)}, {row.iterations} iterations, relMSE {figures(row.relmse)}"
-                )
+                seconds = time_text(row, self.convergence.axis)
+                self.captions[place] = f"{seconds}, {row.iterations} iterations, relMSE {figures(row.relmse)}"
 
     def _add_maps(self, number, label, flip):
         if label not in self.errors:
@@ -157,8 +156,8 @@ def _fields(convergence, pictures):
         if pictures.flip
         else "",
         "ramp": ", ".join(f"rgb({r}, {g}, {b})" for r, g, b in RAMP.tolist()),
-        "heat_low": f"{low:.0e}",
-        "heat_high": f"{high:g}",
+        "heat_low": figures(low),
+        "heat_high": figures(high),
         "data": json.dumps(data).replace("<", "\\u003c"),
     }
 
@@ -203,8 +202,10 @@ def _key(convergence, label):
 def _last_table(convergence, pictures):
     cells, fits = summary(convergence), slopes(convergence)
     base = convergence.entries[0].label
-    header = ["", "seconds", "iterations", "relMSE", "sMAPE", "FLIP", "mean", "slope of relMSE",
-              f"speed against {base}", "Mrays/s", "memory"]  # fmt: skip
+    clock = clock_of(convergence.axis)
+    seconds = "CPU seconds" if clock == "cpu_seconds" else "seconds"
+    header = ["", seconds, "iterations", "relMSE", "sMAPE", "FLIP", "mean", "slope", f"speed against {base}",
+              "Mrays/s", "memory"]  # fmt: skip
     lines = []
     for entry in convergence.entries:
         own = [cell for cell in cells if cell["entry"] == entry.label]
@@ -213,7 +214,7 @@ def _last_table(convergence, pictures):
             ratio = speed_up(cells, entry.label, base, convergence.axis)
             lines.append([
                 _key(convergence, entry.label),
-                figures(cell["wall_seconds"]),
+                figures(cell[clock]),
                 figures(cell["iterations"]),
                 _error(cell, "relmse"),
                 _error(cell, "smape"),
@@ -221,7 +222,7 @@ def _last_table(convergence, pictures):
                 _mean(cell),
                 escape(slope_text(fits[entry.label]["relmse"])),
                 "" if ratio is None else f"{figures(ratio)} x",
-                figures(cell["rays"] / cell["wall_seconds"] / 1e6),
+                figures(cell["rays"] / cell[clock] / 1e6),
                 memory(cell["render_memory_bytes"]),
             ])  # fmt: skip
     return _table(header, lines)

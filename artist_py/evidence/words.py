@@ -27,6 +27,11 @@ def duration(seconds):
     return f"{minutes} m {rest:02d} s" if minutes < 60 else f"{minutes // 60} h {minutes % 60:02d} m"
 
 
+def time_text(row, axis):
+    """When a row was looked at, by the clock of `axis`."""
+    return f"{duration(row.cpu_seconds)} CPU" if axis == "cpu" else duration(row.wall_seconds)
+
+
 def memory(n_bytes):
     """MiB."""
     return f"{n_bytes / 2**20:.0f} MiB"

@@ -1,5 +1,6 @@
 """`artist stress`: extreme scenes with all integrators, and whether each came out right."""
 
+import sys
 import time
 
 import click
@@ -8,6 +9,7 @@ from artist_py.errors import OptionError, OutputError
 
 STYLES = {"ok": "green", "too noisy": "yellow"}  # whatever else is wrong is red
 WRONG = 1
+FILE_WIDTH = 220  # columns of the table where the output is no terminal
 
 
 @click.command()
@@ -104,15 +106,14 @@ def _print(matrix, seconds):
     from rich.table import Table
     from rich.text import Text
 
-    console = Console(soft_wrap=False, highlight=False)
-    width = None if console.is_terminal else 200
+    console = Console(width=None if sys.stdout.isatty() else FILE_WIDTH, highlight=False)
     table = Table("case", "expected", *matrix.integrators)
     for case in matrix.cases:
         cells = [matrix.text(case, name) for name in matrix.integrators]
         table.add_row(
             Text(case.name), Text(str(case.expect)), *(Text(t, STYLES.get(s, "red")) for s, t in cells)
         )
-    console.print(table, width=width)
+    console.print(table)
     for case, name, verdict in matrix.faults():
         click.echo(f"{case.name}, {name}: {verdict.status}: {verdict.text}")
     click.echo(f"{matrix.summary} ({seconds:.0f} s)")

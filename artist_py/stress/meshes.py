@@ -15,7 +15,7 @@ def write_ply(path, vertices, faces):
         f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
     )
     rows = np.empty(len(faces), FACE)
-    rows["count"], rows["corners"] = 3, faces
+    rows["count"], rows["corners"] = 3, np.reshape(faces, (-1, 3))
     with open(path, "wb") as file:
         file.write(header.encode())
         file.write(np.ascontiguousarray(vertices, "<f4").tobytes())

@@ -16,15 +16,16 @@ PAGE = Template("""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>artist stress</title>
 <meta name="viewport" content="width=device-width">
 <style>
-body { font: 15px/1.45 system-ui, sans-serif; margin: 2em auto; max-width: 90em; padding: 0 1em; color: #222;
+body { font: 15px/1.45 system-ui, sans-serif; margin: 2em auto; max-width: 110em; padding: 0 1em; color: #222;
   background: #fff }
 table { border-collapse: collapse; width: 100% }
 th, td { text-align: left; vertical-align: top; padding: .35em .6em; border-bottom: 1px solid #ddd }
 thead th { position: sticky; top: 0; background: #fff }
 td.cell { white-space: nowrap; font-variant-numeric: tabular-nums; font-size: 13px }
 .ok { background: #e9f5e9 } .wrong { background: #f9d6d5 } .noisy { background: #fdf1cf } .out { color: #888 }
+td:first-child { min-width: 17em } td:nth-child(2) { max-width: 12em; overflow-wrap: anywhere }
 small { color: #666 }
-img { image-rendering: pixelated; width: 32px; height: 32px; object-fit: fill; float: left; margin-right: .5em }
+img { image-rendering: pixelated; width: 32px; height: 32px; object-fit: fill; float: left; margin: 0 .5em 2em 0 }
 </style></head><body>
 <h1>artist stress</h1>
 <p>$summary, $seconds s.</p>
@@ -76,7 +77,8 @@ def _cell(matrix, case, integrator):
     kind = {"ok": "ok", "too noisy": "noisy"}.get(verdict.status, "wrong")
     lines = [escape(verdict.status)]
     if verdict.z is not None:
-        lines.append(f"{1 + verdict.deviation:.4f} &plusmn; {verdict.error:.4f}, {verdict.z:.1f} se")
+        lines.append(f"{1 + verdict.deviation:.4f} &plusmn; {verdict.error:.4f}")
+        lines.append(f"{verdict.z:.1f} se")
     if cell.found is not None:
         count = f"{cell.found.iterations} it, " if cell.found.iterations else ""
         lines.append(f"<small>{count}{cell.found.seconds:.1f} s</small>")

@@ -81,7 +81,7 @@ CASES = (
     refused(
         "emitter-without-area",
         "A lamp that is a line.",
-        "no area",
+        "has an area",
         furnace([shape("mesh", file="bad.ply", emission=1)]),
         files=(("bad.ply", write_ply, ([[0.0, 0, 0], [1, 0, 0], [0.5, 0, 0]], [[0, 1, 2]])),),
     ),

@@ -25,7 +25,7 @@ td.cell { white-space: nowrap; font-variant-numeric: tabular-nums; font-size: 13
 .ok { background: #e9f5e9 } .wrong { background: #f9d6d5 } .noisy { background: #fdf1cf } .out { color: #888 }
 td:first-child { min-width: 17em } td:nth-child(2) { max-width: 12em; overflow-wrap: anywhere }
 small { color: #666 }
-img { image-rendering: pixelated; width: 32px; height: 32px; object-fit: fill; float: left; margin: 0 .5em 2em 0 }
+img { image-rendering: pixelated; width: 32px; height: 32px; object-fit: fill; display: block }
 </style></head><body>
 <h1>artist stress</h1>
 <p>$summary, $seconds s.</p>

@@ -118,6 +118,7 @@ CASES = (
         furnace(albedo=0.999, film={"resolution": [2, 2]}, render=LONG),
         Radiance(LONG_VALUE),
         integrators=("pt", "lt", "ppm", "bpm"),
+        precision=0.03,
         rounding=1e-4,
         why="A thousand times the rounding of the albedo to float32.",
     ),

@@ -110,7 +110,7 @@ def test_list(capsys):
 
 
 def test_cases_are_well_formed():
-    """Names are unique, biases and leavings out have reasons, and only what must be refused is."""
+    """Names are unique, biases have reasons, and of the quick ones only what must be refused is."""
     names = [case.name for case in cases.CASES]
     assert len(set(names)) == len(names)
     for case in cases.CASES:
@@ -119,9 +119,8 @@ def test_cases_are_well_formed():
             case.name
         )
         assert set(case.left_out) <= set(ALL), case.name
-        text = scene_text(case, case.integrators[0], 1)
-        if not isinstance(case.expect, Refusal):
-            read_scene_text(text, case.name)
+        if case.quick and not isinstance(case.expect, Refusal):
+            read_scene_text(scene_text(case, case.integrators[0], 1), case.name)
 
 
 def test_refused_scenes_are_refused_for_the_reason_given():

@@ -143,6 +143,8 @@ class BackwardsSampler(StochasticSampler):
         begun = time.monotonic()
         for pool in (self.light, self.eye, self.splats):
             _empty(pool)
+        # Where light paths per pixel are not whole, their number varies by one: no earlier row may stay.
+        self.paths.array[-2:] = np.zeros((), path_dtype)
         progress = np.zeros(4, np.int64)
         resume = np.full((self.threads, 2), -1, np.int64)
         while True:

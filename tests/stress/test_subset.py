@@ -25,3 +25,9 @@ def test_extreme_scenes(capsys):
     out = capsys.readouterr().out
     assert code == 0, out
     assert f"all {2 * len(CASES) - 1} cells are right" in out
+
+
+def test_light_paths_that_are_not_whole(capsys):
+    """Two or three per iteration: the third may not be lost, and none of an earlier iteration stay."""
+    code = main(["stress", "--only", "light-paths-0.01", "--integrator", "bpm"])
+    assert code == 0, capsys.readouterr().out

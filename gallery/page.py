@@ -19,8 +19,7 @@ def write_page(folder, pictures, records, details):
     }
     columns = max([len(picture.files) for picture in shown if picture.kind == "equal_time"], default=1)
     count = sum(picture.kind == "scene" for picture in shown)
-    template = Template(TEMPLATE.read_text(encoding="utf-8"))
-    text = template.substitute(
+    text = Template(TEMPLATE.read_text(encoding="utf-8")).substitute(
         count=count,
         columns=columns,
         equal_time=kinds["equal_time"],
@@ -47,13 +46,14 @@ def _row(picture, record, details):
     """All methods at equal time, side by side, and the reference."""
     detail = details.get(picture.scene.stem)
     best = min(record["rows"].values(), key=lambda row: row["relmse"])["relmse"]
-    cells = [
-        _cell(picture.files[f"-{name}"], record, detail, name, _row_facts(row, row["relmse"] == best))
-        for name, row in record["rows"].items()
-    ]
+    cells = []
+    for name in picture.settings["integrators"]:
+        row = record["rows"][name]
+        facts = _row_facts(row, row["relmse"] == best)
+        cells.append(_cell(picture.files[f"-{name}"], record, detail, name, facts))
     reference = record["reference"]
     title = f"reference ({reference['integrator']})"
-    cells.append(_cell(picture.files["-reference"], record, detail, title, _facts(reference)))
+    cells.append(_cell(picture.files["-reference"], record, detail, title, _facts(reference, "<br>")))
     return (
         f'<section class="card"><h3>{escape(picture.scene.stem)}</h3><p>{escape(picture.text)}</p>'
         f'<div class="row">{"".join(cells)}</div></section>'
@@ -106,16 +106,16 @@ def _single_facts(record):
     return f"{escape(record['integrator'])}, {_facts(record)}"
 
 
-def _facts(record):
+def _facts(record, separator=", "):
     own = record["own_relmse"]
-    error = "" if own is None else f", own relMSE {figures(own)}"
+    error = "" if own is None else f"{separator}own relMSE {figures(own)}"
     return f"{record['cpu_seconds']:.1f} s, {_iterations(record)}{error}"
 
 
 def _row_facts(row, is_best):
     error = f"relMSE {figures(row['relmse'])}"
     error = f'<span class="best">{error}</span>' if is_best else error
-    return f"{row['cpu_seconds']:.1f} s, {_iterations(row)}, {error}"
+    return f"{row['cpu_seconds']:.1f} s, {_iterations(row)}<br>{error}"
 
 
 def _iterations(record):

@@ -57,19 +57,30 @@ def _content(value, folder):
 
 
 def all_pictures(file, scenes):
-    """Every `Picture` that the list `file` asks for of the folder `scenes`, the most telling ones first."""
-    plan = tomli.loads(Path(file).read_text(encoding="utf-8"))
-    pictures = []
-    for kind in ("equal_time", "zoom", "techniques"):
-        pictures += [_listed(kind, plan[kind], each, Path(scenes)) for each in plan[kind]["pictures"]]
-    special = plan["scene"].pop("special", {})
-    files = {path.stem: path for path in sorted(Path(scenes).glob("*.toml"))}
+    """Every `Picture` that the list `file` asks for of the folder `scenes`."""
+    plan, scenes = tomli.loads(Path(file).read_text(encoding="utf-8")), Path(scenes)
+    lists = {
+        kind: [_listed(kind, plan[kind], each, scenes) for each in plan[kind]["pictures"]]
+        for kind in ("equal_time", "techniques", "zoom")
+    }
+    return [
+        *lists["equal_time"],
+        *_of_each_scene(file, plan["scene"], scenes),
+        *lists["techniques"],
+        *lists["zoom"],
+    ]
+
+
+def _of_each_scene(file, defaults, scenes):
+    """A picture of every scene file, with the settings that `special` has for some of them."""
+    special = defaults.pop("special", {})
+    files = {path.stem: path for path in sorted(scenes.glob("*.toml"))}
     if unknown := special.keys() - files.keys():
         raise OptionError(f"{file}: scene.special: there is no scene {', '.join(sorted(unknown))}")
-    for name, path in files.items():
-        settings = {**plan["scene"], **special.get(name, {})}
-        pictures.append(Picture(name, "scene", path, settings, opening_comment(path)))
-    return pictures
+    return [
+        Picture(name, "scene", path, {**defaults, **special.get(name, {})}, opening_comment(path))
+        for name, path in files.items()
+    ]
 
 
 def _listed(kind, defaults, given, scenes):
@@ -147,8 +158,6 @@ def update(pictures, manifest, paint, say=print, force=()):
     `paint(picture)` writes the files and returns facts for the caption. Each picture is kept as soon as it is done.
     """
     failed = {}
-    for name in manifest.forget_others(pictures):
-        say(f"{name}: removed")
     due = [each for each in pictures if each.name in force or not manifest.is_current(each)]
     for number, picture in enumerate(due, 1):
         say(f"[{number}/{len(due)}] {picture.name}")

@@ -49,7 +49,7 @@ resolution = [8, 4]
 [materials.floor]
 reflectance = { image = "tile.png" }
 """
-ALL = ["room-equal-time", "room-corner", "room-techniques", "ball", "room"]
+ALL = ["room-equal-time", "ball", "room", "room-techniques", "room-corner"]
 
 
 @pytest.fixture
@@ -76,6 +76,7 @@ def gallery(tmp_path):
             return facts_of(picture)
 
         pictures, manifest = all_pictures(tmp_path / "list.toml", scenes), Manifest(folder)
+        manifest.forget_others(pictures)
         failed = update(pictures, manifest, paint, lambda text: None, force)
         write_page(folder, pictures, manifest.records, details(tmp_path / "list.toml"))
         build.failed = failed

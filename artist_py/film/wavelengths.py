@@ -26,6 +26,16 @@ def wavelength_density(sensor, emission):
     return density / density.sum()
 
 
+def excitation_density(seen, light, yields):
+    """Density of the sets of wavelengths from which fluorescence leads to those that the film sees; float64 (bins,).
+
+    Half of it is the density `seen` of these, and 0.45 goes where the `light` excites: `yields` is the share of the
+    power that all fluorescent materials together give off again, by wavelength of excitation (theory 3.5).
+    """
+    excitation = _normalised(np.maximum(light, 0.0) * yields, yields)
+    return 0.5 * seen + 0.45 * excitation + 0.05 / len(seen)
+
+
 def _normalised(weights, fallback):
     """`weights` scaled to sum to 1; if they are all zero, `fallback`, and if that is, the same everywhere."""
     for candidate in (weights, fallback, np.ones_like(weights)):

@@ -4,6 +4,7 @@ import numpy as np
 
 from ..bsdf.dispatch import is_delta_bsdf, is_mergeable
 from ..core.rng import lattice_point, random_number, random_pair
+from ..core.sets import received
 from ..core.spectra import black
 from ..core.vector import dot
 from ..emitters.dispatch import emitted_radiance, is_emitting_towards, is_hidden, pdf_emitter
@@ -30,7 +31,7 @@ def trace_eye_subpath(  # noqa: PLR0915 - one loop, a line or two per step of th
 ):
     """Radiance along `path` but for merges, whose vertices are stored with the sample's `film_weight`; a `Walk`."""
     scene, limits, method, wavelengths = setup.scene, setup.limits, setup.method, place.wavelengths
-    radiance = black(wavelengths)
+    radiance = black(place.weights)
     length, rays, shadow_rays = 1, 0, 0
     # Whether no vertex so far can be merged at, and whether the first one cannot be connected.
     is_specular, begins_specular = True, True
@@ -41,7 +42,7 @@ def trace_eye_subpath(  # noqa: PLR0915 - one loop, a line or two per step of th
         if hit.geometry == INVALID_ID:
             # Before (1.20): there is nothing to arrive at.
             background = background_hit(setup, path, length, partial, is_only_way, place)
-            radiance = radiance + path.throughput * background
+            radiance = radiance + received(scene.fluorescence, path.throughput, background)
             break
         surface = surface_at(scene.geometry, scene.needs, path.origin, path.direction, hit)
         material = scene.materials[surface.material]
@@ -49,7 +50,7 @@ def trace_eye_subpath(  # noqa: PLR0915 - one loop, a line or two per step of th
         cos_in = abs(dot(path.direction, surface.normal))
         arrived = on_arrival(partial, dot(way, way), cos_in)
         emitted = emission_hit(scene, method, surface, path, length, arrived, is_only_way, wavelengths)
-        radiance = radiance + path.throughput * emitted.value
+        radiance = radiance + received(scene.fluorescence, path.throughput, emitted.value)
         _record(setup, place, HIT, length, length, path.throughput, emitted)
         if is_passed_through(scene, surface, material, path):
             path = go_straight(scene, surface, material, path)
@@ -77,7 +78,7 @@ def trace_eye_subpath(  # noqa: PLR0915 - one loop, a line or two per step of th
                 pair + EMITTER,
                 u_select,
             )
-            radiance = radiance + path.throughput * joined.value
+            radiance = radiance + received(scene.fluorescence, path.throughput, joined.value)
             shadow_rays += joined.rays
             _store(setup, thread, surface, material, path, partial, length, index, film_weight)
         if random_number(stream, ROULETTE + length) >= survival:
@@ -97,7 +98,8 @@ def trace_eye_subpath(  # noqa: PLR0915 - one loop, a line or two per step of th
 @function
 def _record(setup, place, technique, length, eye_length, throughput, found):
     tables, spectra = setup.stores.techniques, setup.scene.spectra
-    record(tables, spectra, place, technique, length, eye_length, throughput * found.value, found.weight)
+    contribution = received(setup.scene.fluorescence, throughput, found.value)
+    record(tables, spectra, place, technique, length, eye_length, contribution, found.weight)
 
 
 @function

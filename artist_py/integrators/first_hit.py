@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..bsdf.dispatch import reflectance_bsdf
+from ..bsdf.fluorescence import albedo_under_white
 from ..cameras.perspective import camera_ray, sample_film
 from ..core.atomic import fetch_and_add
 from ..core.rng import random_pair, stream_of
@@ -86,6 +87,7 @@ def _add_albedo(scene, camera, sensing, stream, surface, origin, direction, row,
     albedo = reflectance_bsdf(
         scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, vertex.wo, outside
     )
+    albedo = albedo_under_white(scene.fluorescence, material, albedo, weights)
     red, green, blue = rgb_of(scene.spectra, albedo * weights, wavelengths)
     hits.albedo[row, column, 0] += red
     hits.albedo[row, column, 1] += green

@@ -24,7 +24,7 @@ def add_splats(setup, first, end, image):
                 splat = splats[path.first_splat + i]
                 row = splat.pixel // width
                 if first <= row < end:
-                    value, column = _value(splat, wavelengths), splat.pixel % width
+                    value, column = _value(splat, weights), splat.pixel % width
                     add_sample(sensing, scene.spectra, image, row, column, value * weights, wavelengths)
                     place = Place(row, column, wavelengths, weights)
                     _record(setup.stores.techniques, scene, place, splat, value)

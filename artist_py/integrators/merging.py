@@ -2,6 +2,7 @@
 
 from ..core.atomic import fetch_and_add
 from ..core.rng import stream_of
+from ..core.sets import given, received
 from ..jit import kernel
 from ..transport.merge import merge_at
 from ..transport.recording import Place
@@ -28,7 +29,7 @@ def gather(setup, grid, merging, progress, image):
         for index in range(chunk * CHUNK, chunk * CHUNK + eye.used[chunk]):
             record = eye.records[index]
             wavelengths, weights = wavelengths_of_pixel(rotation, sensing, shared, record.pixel)
-            stored = load_vertex(scene, record, sensing.zero, wavelengths)
+            stored = load_vertex(scene, record, given(sensing.start, sensing.zero), wavelengths)
             survival = local_survival(scene, stored.vertex, wavelengths)
             place = Place(record.pixel // width, record.pixel % width, wavelengths, weights)
             merged = merge_at(
@@ -44,6 +45,6 @@ def gather(setup, grid, merging, progress, image):
                 window_of(rotation, sensing.nodes, wavelengths, record.pixel),
             )
             merges += merged.count
-            value = stored.throughput * merged.value * weights
+            value = received(scene.fluorescence, stored.throughput, merged.value) * weights
             add_sample(sensing, scene.spectra, image, place.row, place.column, value, wavelengths)
     fetch_and_add(progress, MERGES, merges)

@@ -8,6 +8,7 @@ from ..bsdf.dispatch import is_delta_bsdf
 from ..cameras.perspective import camera_ray, sample_film
 from ..core.atomic import fetch_and_add
 from ..core.rng import random_pair, stream_of
+from ..core.sets import received
 from ..core.spectra import black
 from ..core.table import Table
 from ..core.vector import Spectrum
@@ -133,7 +134,7 @@ def _numbers_if(alias, lobes, stream, pair):
 def path_radiance(scene, limits, sensing, stream, origin, direction, media, place, techniques):
     """`Traced` radiance along the ray, W m^-2 sr^-1 nm^-1 per wavelength, of up to `limits.max_length` edges."""
     wavelengths = place.wavelengths
-    radiance = black(wavelengths)
+    radiance = black(place.weights)
     path = start_path(origin, direction, sensing, media)
     length, rays, shadow_rays = 1, 0, 0
     while True:
@@ -141,11 +142,11 @@ def path_radiance(scene, limits, sensing, stream, origin, direction, media, plac
         hit = closest_hit(scene.geometry.embree, path.origin, path.direction, np.inf)
         if hit.geometry == INVALID_ID:
             background = radiance_of_background(scene, path, length, place, techniques)
-            radiance = radiance + path.throughput * background
+            radiance = radiance + received(scene.fluorescence, path.throughput, background)
             break
         surface = surface_at(scene.geometry, scene.needs, path.origin, path.direction, hit)
         emitted = radiance_of_hit(scene, surface, path, length, wavelengths)
-        radiance = radiance + path.throughput * emitted.radiance
+        radiance = radiance + received(scene.fluorescence, path.throughput, emitted.radiance)
         _record(techniques, scene, place, HIT, length, length, path, emitted)
         material = scene.materials[surface.material]
         if is_passed_through(scene, surface, material, path):
@@ -158,18 +159,18 @@ def path_radiance(scene, limits, sensing, stream, origin, direction, media, plac
         u_select, u_lobe = choice_numbers(scene, stream, pair + CHOICE)
         if not is_delta_bsdf(material):
             direct = connect_to_emitter(scene, vertex, wavelengths, stream, pair + EMITTER, u_select)
-            radiance = radiance + path.throughput * direct.radiance
+            radiance = radiance + received(scene.fluorescence, path.throughput, direct.radiance)
             _record(techniques, scene, place, NEE, length + 1, length, path, direct)
             shadow_rays += direct.rays
         path = scatter(scene, vertex, path, wavelengths, stream, pair + BSDF, u_lobe, None).path
         length += 1
-        if path.is_absorbed or is_ended_by_roulette(limits, stream, length, path):
+        if path.is_absorbed or is_ended_by_roulette(scene.fluorescence, limits, stream, length, path):
             break
-        path = after_roulette(limits, length, path)
+        path = after_roulette(scene.fluorescence, limits, length, path)
     return Traced(radiance, rays, shadow_rays)
 
 
 @function
 def _record(tables, scene, place, technique, length, eye_length, path, found):
-    contribution = path.throughput * found.radiance
+    contribution = received(scene.fluorescence, path.throughput, found.radiance)
     record(tables, scene.spectra, place, technique, length, eye_length, contribution, found.weight)

@@ -23,7 +23,7 @@ from ..transport.photon_grid import Grid, count_photons, photon_dtype, place_pho
 from ..transport.rotation import Rotation
 from ..transport.splats import splat_dtype
 from ..transport.vertices import CHUNK, NEXT_CHUNK, SHORTAGE, Pool
-from .memory import RECORDS_PER_PATH, stored_vertex_dtype
+from .memory import RECORDS_PER_PATH, lanes_of, stored_vertex_dtype
 from .pilot import Pilot
 from .stochastic import StochasticSampler
 from .wavelengths import mean_acceptance, van_der_corput
@@ -79,7 +79,7 @@ class BackwardsSampler(StochasticSampler):
         self.subset = subset_of(render.integrator, render.samples)
         self.n_pixels = film.width * film.height
         self.light_paths = light_paths  # per pixel
-        self.lanes = render.hero_count
+        self.lanes, eye_lanes = lanes_of(compiled)
         self.counts = {"light_vertices": 0, "eye_vertices": 0, "merges": 0}
         self.phases = dict.fromkeys(("subpaths", "photon_grid", "merging", "light_image", "film"), 0.0)
         self.offsets = self._offsets(compiled, render)
@@ -88,10 +88,13 @@ class BackwardsSampler(StochasticSampler):
             tolerance = self.merging.wavelength_tolerance
             self.acceptance = mean_acceptance(compiled.nodes, self.lanes, tolerance)
         self.paths = Table(np.zeros(math.ceil(self.n_pixels * self.light_paths) + 1, path_dtype))
-        vertex = stored_vertex_dtype(compiled)
-        self.light = self._pool(vertex, self.subset.connect or self.subset.merge)
-        self.eye = self._pool(vertex, self.subset.merge)
-        self.splats = self._pool(splat_dtype(self.lanes, recorder is not None), self.subset.light_image)
+        self.light = self._pool(
+            stored_vertex_dtype(compiled, self.lanes), self.subset.connect or self.subset.merge
+        )
+        self.eye = self._pool(stored_vertex_dtype(compiled, eye_lanes), self.subset.merge)
+        self.splats = self._pool(
+            splat_dtype(render.hero_count, recorder is not None), self.subset.light_image
+        )
         is_weighed = self.subset.merge and not self.subset.merge_once
         self.pilot = None
         if is_weighed and self.merging.correlation == "vcm+":

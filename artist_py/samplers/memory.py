@@ -16,10 +16,17 @@ BYTES_PER_FACE = 110  # of Embree's acceleration structure, about
 FEWEST_LIGHT_PATHS = 0.05  # per pixel
 
 
-def stored_vertex_dtype(compiled):
-    """Layout of the vertices that a render stores."""
+def lanes_of(compiled):
+    """Numbers that the throughput of a light subpath has, and of an eye subpath (core/sets.py)."""
+    count = compiled.graph.render.hero_count
+    if compiled.fluorescence is None:
+        return count, count
+    return compiled.fluorescence.n_sets * count, compiled.fluorescence.n_sets * count**2
+
+
+def stored_vertex_dtype(compiled, lanes):
+    """Layout of the vertices that a render stores, of subpaths whose throughput has so many numbers."""
     needs = compiled.scene.needs
-    lanes = compiled.graph.render.hero_count
     return vertex_dtype(lanes, needs.smooth_triangles is not None, needs.textures is not None)
 
 
@@ -75,21 +82,21 @@ def _subset(render):
 
 
 def _bytes_per_eye_path(compiled):
-    method = _subset(compiled.graph.render)
-    return RECORDS_PER_PATH * stored_vertex_dtype(compiled).itemsize if method and method.merge else 0
+    method, (_, lanes) = _subset(compiled.graph.render), lanes_of(compiled)
+    return RECORDS_PER_PATH * stored_vertex_dtype(compiled, lanes).itemsize if method and method.merge else 0
 
 
 def _bytes_per_light_path(compiled):
     """Stored vertices, their copies in the photon grid, and splats."""
-    render = compiled.graph.render
-    method, lanes = _subset(render), render.hero_count
+    render, (lanes, _) = compiled.graph.render, lanes_of(compiled)
+    method = _subset(render)
     if method is None:
         return 0
     size, photon = 40, photon_dtype(lanes, render.wavelengths == "rotate")
     if method.merge:
-        size += RECORDS_PER_PATH * (stored_vertex_dtype(compiled).itemsize + photon.itemsize + 8)
+        size += RECORDS_PER_PATH * (stored_vertex_dtype(compiled, lanes).itemsize + photon.itemsize + 8)
     if method.light_image:
-        size += RECORDS_PER_PATH * splat_dtype(lanes).itemsize
+        size += RECORDS_PER_PATH * splat_dtype(render.hero_count).itemsize
     return size
 
 

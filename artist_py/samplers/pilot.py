@@ -50,7 +50,7 @@ class Pilot:
         work = Pass(sampler.seed, 0, 0, sampler.crop, sampler.width, Table(np.zeros(4, np.int64)))
         ends = CHUNK * np.stack([np.arange(threads), np.arange(1, threads + 1)], axis=1)
         pool = Pool(
-            Table(np.empty(threads * CHUNK, stored_vertex_dtype(compiled))),
+            Table(np.empty(threads * CHUNK, stored_vertex_dtype(compiled, sampler.lanes))),
             Table(np.zeros(2, np.int64)),
             Table(ends),
             Table(np.zeros(threads, np.int32)),

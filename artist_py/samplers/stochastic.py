@@ -14,7 +14,7 @@ from ..jit import cache_statistics
 from ..transport.roulette import Limits
 from ..transport.sensing import Bands, Sensing
 from .compiling import compile_apart, types_of
-from .wavelengths import resolve_spectra, shared_wavelengths
+from .wavelengths import fluorescence_at, resolve_spectra, sets_of_wavelengths, shared_wavelengths
 
 STRATIFIED_PAIRS = 9  # the film, the lens, the wavelengths and two vertices; see benchmarks/README.md
 STOP_POLL_SECONDS = 0.05
@@ -84,6 +84,8 @@ class StochasticSampler:
     def scene_and_sensing(self, iteration, bands):
         """The scene's tables and the sensor at the wavelengths of `iteration`."""
         compiled = self.compiled
+        if compiled.fluorescence is not None:
+            return self._fluorescent_scene_and_sensing(iteration, bands)
         render = compiled.graph.render
         zero, one = Spectrum(np.zeros(render.hero_count)), Spectrum(np.ones(render.hero_count))
         ratio = one if compiled.scene.needs.dispersion else None
@@ -96,6 +98,25 @@ class StochasticSampler:
         return compiled.scene._replace(spectra=spectra), Sensing(
             zero, ratio, Table(compiled.nodes), Table(shared), bands
         )
+
+    def _fluorescent_scene_and_sensing(self, iteration, bands):
+        """The same with several sets of wavelengths (theory 3.2)."""
+        compiled, render = self.compiled, self.compiled.graph.render
+        count, first = render.hero_count, compiled.wavelength_range[0]
+        shared = sets_of_wavelengths(compiled.fluorescence.set_nodes, count, render.seed, iteration)
+        fluorescence = fluorescence_at(compiled.fluorescence, count, first, *shared)
+        spectra = resolve_spectra(compiled.spectra, compiled.ior_rows, first, shared[0])
+        zero = fluorescence.zero
+        sensing = Sensing(
+            zero,
+            Spectrum(np.ones(len(zero.values))) if compiled.scene.needs.dispersion else None,
+            Table(compiled.nodes),
+            Table(shared),
+            bands,
+            Spectrum(np.zeros(count)),
+            fluorescence.matrix,
+        )
+        return compiled.scene._replace(spectra=spectra, fluorescence=fluorescence), sensing
 
     def add_to_film(self, iteration):
         """Add the image of the iteration to the film, in row order whatever the threads."""

@@ -3,7 +3,8 @@
 import numpy as np
 
 from ..core.table import Table
-from ..scene.tables import Spectra
+from ..core.vector import Spectrum
+from ..scene.tables import Fluorescence, Spectra
 
 
 def van_der_corput(index):
@@ -18,7 +19,11 @@ def shared_wavelengths(nodes, count, seed, iteration):
     like all their random numbers (core/rng.py).
     """
     shift = np.random.default_rng([seed, iteration & 1]).random()
-    offset = (shift + van_der_corput(iteration >> 1)) % 1.0
+    return _at_offset(nodes, count, (shift + van_der_corput(iteration >> 1)) % 1.0)
+
+
+def _at_offset(nodes, count, offset):
+    """Wavelengths and weights of a set whose strata are all visited at `offset` in [0, 1), float64 (2, C)."""
     entries = len(nodes) - 1
     position = (offset + np.arange(count)) / count * entries
     index = np.minimum(position.astype(int), entries - 1)
@@ -37,6 +42,49 @@ def mean_acceptance(nodes, count, tolerance, steps=4096):
     low = np.maximum(np.interp(wavelength - tolerance, nodes, shares), position - 0.5 / count)
     high = np.minimum(np.interp(wavelength + tolerance, nodes, shares), position + 0.5 / count)
     return float(count * np.mean(high - low))
+
+
+def sets_of_wavelengths(set_nodes, count, seed, iteration):
+    """The same for M sets, one after the other, float64 (2, M C).
+
+    Sets are independent of each other (theory 3.3): their offsets are those of a sequence in M dimensions, the
+    additive recurrence of Roberts (2018), shifted at random.
+    """
+    n_sets = len(set_nodes)
+    shift = np.random.default_rng([seed, iteration & 1]).random(n_sets)
+    offsets = (shift + (iteration >> 1) * _golden(n_sets) ** -np.arange(1.0, n_sets + 1.0)) % 1.0
+    return np.hstack([_at_offset(nodes, count, u) for nodes, u in zip(set_nodes, offsets, strict=True)])
+
+
+def _golden(dimensions):
+    """The root above 1 of x^(d + 1) = x + 1."""
+    root = 2.0
+    for _ in range(64):
+        root = (1.0 + root) ** (1.0 / (dimensions + 1))
+    return root
+
+
+def fluorescence_at(fluorescent, count, first, wavelengths, weights):
+    """`Fluorescence` between sets of `count` wavelengths each, float64 (M C,); R by bin, like spectra."""
+    n_sets, last = fluorescent.n_sets, fluorescent.totals.shape[1] - 1
+    bins = np.clip((wavelengths - first).astype(int), 0, last)
+    out = bins.reshape(n_sets, 1, count)
+    into = np.roll(bins.reshape(n_sets, count), -1, axis=0)[:, :, None]
+    weight = np.roll(weights.reshape(n_sets, count), -1, axis=0)[:, :, None]
+    rates = (
+        fluorescent.matrices[:, out, into] * weight
+    )  # (materials, m, j, k): to wavelength k of set m from j of m + 1
+    towards_eye = rates.transpose(0, 2, 1, 3)
+    towards_light = np.roll(rates, 1, axis=1).transpose(0, 3, 1, 2)  # (materials, k, m + 1, j)
+    size = (len(rates), -1)
+    survival = fluorescent.totals[:, bins].max(axis=1)
+    return Fluorescence(
+        Table(towards_eye.reshape(size).astype(np.float32)),
+        Table(towards_light.reshape(size).astype(np.float32)),
+        Table(survival),
+        Spectrum(np.zeros(n_sets * count)),
+        Spectrum(np.eye(n_sets * count, count).ravel()),
+    )
 
 
 def resolve_spectra(dense, ior_rows, first, wavelengths):

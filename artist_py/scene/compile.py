@@ -14,6 +14,12 @@ from artist_py.film.wavelengths import inverse_cdf, wavelength_density
 from artist_py.scene import tables
 from artist_py.scene.compile_camera import camera_matrices, compile_camera, compile_filter
 from artist_py.scene.compile_emitters import EmitterCompiler
+from artist_py.scene.compile_fluorescence import (
+    FluorescentScene,
+    fluorescent_scene,
+    fluoresces,
+    with_shared_wavelengths,
+)
 from artist_py.scene.compile_geometry import GeometryCompiler, collect_parts, space_of
 from artist_py.scene.compile_lights import method_warnings
 from artist_py.scene.compile_materials import NEED_NAMES, MaterialCompiler, SpectrumRows
@@ -21,6 +27,7 @@ from artist_py.scene.compile_textures import check_coordinates
 from artist_py.transport.initial_media import media_at
 
 VISIBLE = 380, 780  # nm
+EXTENDED = 300, 780  # nm, where materials fluoresce: ultraviolet becomes visible
 EMITTER_NEEDS = {
     tables.TRIANGLE_EMITTER: "triangle_emitters",
     tables.PARALLELOGRAM_EMITTER: "parallelogram_emitters",
@@ -47,6 +54,7 @@ class CompiledScene:
     camera: tables.Camera
     pixel_filter: tables.Filter
     nodes: np.ndarray  # inverse distribution of wavelengths, nm
+    fluorescence: FluorescentScene | None  # of scenes where something fluoresces
     wavelength_range: tuple
     spectra: np.ndarray  # float32 (rows, bins), the dense table whatever the wavelength mode
     ior_rows: list
@@ -69,7 +77,10 @@ def compile_scene(graph, threads=None):
     parts = collect_parts(graph)
     space = space_of(parts, [graph.camera.position, graph.camera.look_at])
     geometry = GeometryCompiler(graph, parts, space, threads or len(os.sched_getaffinity(0)))
-    first, last = graph.render.wavelength_range or VISIBLE
+    is_fluorescent = fluoresces(graph, {placed.material for placed in geometry.placed})
+    if is_fluorescent:
+        graph = with_shared_wavelengths(graph)
+    first, last = graph.render.wavelength_range or (EXTENDED if is_fluorescent else VISIBLE)
     spectra = SpectrumRows(first, last)
     observer = graph.film.observer
     sensor = sensor_table(first, last, observer) * (flat_luminance(observer) / graph.film.white_luminance)
@@ -107,6 +118,9 @@ def compile_scene(graph, threads=None):
     geometry.warnings += method_warnings(graph.render.integrator, scene)
     if not emitters.light.any():
         geometry.warnings.append(f"nothing emits light from {first} to {last} nm: the image will be black")
+    fluorescent = fluorescent_scene(
+        materials.glows, sensor, emitters.light, first, graph.render.wavelength_sets
+    )
     nodes = inverse_cdf(wavelength_density(sensor, emitters.light), first)
     return CompiledScene(
         graph,
@@ -114,13 +128,14 @@ def compile_scene(graph, threads=None):
         camera,
         compile_filter(graph.film),
         nodes,
+        fluorescent,
         (first, last),
         dense,
         spectra.ior_rows,
         space,
         camera_matrices(graph.camera, graph.film),
         embree,
-        geometry.warnings + materials.textures.warnings,
+        geometry.warnings + materials.textures.warnings + materials.warnings,
         materials.textures.images,
         seconds=time.perf_counter() - begun,
     )
@@ -188,6 +203,7 @@ def _needs(graph, geometry, materials, emitters, media):
         "instances": bool(graph.instances),
         "one_sided": bool((materials.table["two_sided"][1:] == 0).any()),
         "textures": bool((materials.table["texture"] >= 0).any()),
+        "fluorescence": bool(materials.glows),
         "shared_wavelengths": graph.render.wavelengths == "shared",
     }
     present |= {name for name, condition in conditions.items() if condition}

@@ -9,6 +9,7 @@ from artist_py.scene import graph as scene_graph
 from artist_py.scene import tables
 from artist_py.scene.compile_textures import TextureCompiler, is_textured, reflectance_row
 from artist_py.scene.optics import diffuse_transmittance, ior_table, is_dispersive, metal_table
+from artist_py.scene.reradiation import glow_of
 from artist_py.scene.spectra import ROUNDING, tabulate
 from artist_py.scene.where import problem
 
@@ -20,6 +21,7 @@ KINDS = {
     scene_graph.OrenNayar: tables.OREN_NAYAR,
     scene_graph.Phong: tables.PHONG,
     scene_graph.Plastic: tables.PLASTIC,
+    scene_graph.Fluorescent: tables.DIFFUSE,  # with a row of `Fluorescence`
     scene_graph.Mirror: tables.MIRROR,
     scene_graph.Conductor: tables.CONDUCTOR,
     scene_graph.Dielectric: tables.DIELECTRIC,
@@ -75,7 +77,8 @@ class MaterialCompiler:
         self.rows = {None: 0, **{name: i + 1 for i, name in enumerate(names)}}
         self.table = np.zeros(len(names) + 1, tables.material_dtype)
         self.media = [(0, -1, 1.0)]
-        self.table["kind"][0], self.table["texture"] = tables.ABSORBER, -1
+        self.glows, self.warnings = [], []  # `Glow` by row of `Fluorescence`
+        self.table["kind"][0], self.table["texture"], self.table["fluorescence"] = tables.ABSORBER, -1, -1
         for name in names:
             self._fill(self.table[self.rows[name]], graph.materials[name])
         if self.problems:
@@ -87,7 +90,7 @@ class MaterialCompiler:
         try:
             if is_textured(material):
                 row["texture"] = self.textures.row(material.reflectance)
-            elif hasattr(material, "reflectance"):
+            elif getattr(material, "reflectance", None) is not None:
                 row["reflectance"] = reflectance_row(
                     self.spectra, material.reflectance, material, "reflectance"
                 )
@@ -113,6 +116,12 @@ class MaterialCompiler:
             raise SceneError(
                 [problem(material, "specular", f"expected reflectance + specular <= 1, {found}")]
             )
+
+    def _fill_fluorescent(self, row, material):
+        glow = glow_of(material, self.spectra.first, self.spectra.last)
+        row["reflectance"], row["fluorescence"] = self.spectra.row(glow.reflectance), len(self.glows)
+        self.glows.append(glow)
+        self.warnings += glow.warnings
 
     def _largest_reflectance(self, row):
         """The most that a material reflects anywhere, per bin."""
@@ -145,6 +154,7 @@ class MaterialCompiler:
         scene_graph.OrenNayar: _fill_oren_nayar,
         scene_graph.Phong: _fill_phong,
         scene_graph.Plastic: _fill_plastic,
+        scene_graph.Fluorescent: _fill_fluorescent,
         scene_graph.Conductor: _fill_conductor,
         scene_graph.Dielectric: _fill_ior,
         scene_graph.ThinDielectric: _fill_ior,

@@ -42,6 +42,7 @@ FEATURES = {
     "hidden_emitters": ("emitters that the camera does not see", "every emitter is visible"),
     "one_sided": ("materials that are black from behind", "every material is two-sided"),
     "textures": ("reflectances that vary over surfaces", "no material has a texture"),
+    "fluorescence": ("light given off at other wavelengths, sets of wavelengths", "no material fluoresces"),
     "shared_wavelengths": ("one set of wavelengths per iteration", "every path has its own wavelengths"),
 }
 
@@ -100,12 +101,16 @@ def _lights(compiled):
 
 
 def _materials(compiled):
-    words = {kind: cls.__name__ for cls, kind in KINDS.items()}
-    used = compiled.scene.materials.array["kind"][1:]
+    words = {kind: cls.__name__ for cls, kind in reversed(KINDS.items())}
+    rows = compiled.scene.materials.array[1:]
+    used = rows["kind"]
     counts = [(words[kind], int(np.sum(used == kind))) for kind in sorted(set(used.tolist()))]
+    counts += (
+        [("of these fluorescent", int(np.sum(rows["fluorescence"] >= 0)))] if compiled.fluorescence else []
+    )
     unused = len(compiled.graph.materials) - len(used)
-    rows = [(name, str(count)) for name, count in counts]
-    return rows + ([("defined but not used", str(unused))] if unused else [])
+    found = [(name, str(count)) for name, count in counts]
+    return found + ([("defined but not used", str(unused))] if unused else [])
 
 
 def _textures(compiled):

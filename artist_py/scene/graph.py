@@ -25,6 +25,7 @@ from artist_py.scene.fields import (
     node,
     numbers,
 )
+from artist_py.scene.fluorescent_types import Dye, Reradiation, dyes, reradiation, share
 from artist_py.scene.messages import expected, show
 from artist_py.scene.shape_types import SHAPES, Shape, Vector, distance, shape, transform
 from artist_py.scene.spectrum_fields import IndexField, MetalField, SpectrumField
@@ -210,6 +211,9 @@ class Render(Node):
     wavelength_range: tuple[int, int] | None = key(
         numbers(2, "[first, last]", Number(at_least=300, at_most=830, whole=True)), None
     )  # nm; default: 380 to 780, or from 300 where the scene needs it
+    wavelength_sets: int = key(
+        Number(at_least=1, at_most=4, whole=True), 3
+    )  # of shared wavelengths, where materials fluoresce
     sampler: str = key(Choice(("sobol", "independent")), "sobol")
     heuristic: str = key(Choice(("balance", "power")), "balance")  # of bidirectional methods; power: beta = 2
     samples: Samples = key(Table(Samples), Samples())
@@ -284,6 +288,38 @@ class Plastic(Material):
 
 
 @node
+class Fluorescent(Material):
+    """type = "fluorescent": Lambert, and light given off at longer wavelengths than it was absorbed at."""
+
+    reflectance: Spectrum | None = key(share, None)  # default: the diagonal of a measured matrix, else 0
+    absorption: Spectrum | None = key(share, None)  # of a dye: share of the light, by wavelength
+    emission: Spectrum | None = key(_radiance, None)  # of the dye: power per nm, on any scale
+    quantum_yield: float = key(Number(at_least=0, at_most=1), 1.0)  # of the dye: photons per photon absorbed
+    dyes: tuple[Dye, ...] | None = key(dyes, None)  # instead, or besides
+    reradiation: Reradiation | None = key(reradiation, None)  # instead, or besides
+
+    def all_dyes(self):
+        """The dyes, that of the material's own keys first."""
+        own = (
+            Dye(
+                absorption=self.absorption,
+                emission=self.emission,
+                quantum_yield=self.quantum_yield,
+                where=self.where,
+            ),
+        )
+        return (own if self.absorption is not None else ()) + (self.dyes or ())
+
+    def problems(self):
+        if self.absorption is None and self.emission is not None:
+            yield "absorption", "missing, expected a spectrum, since there is emission"
+        elif self.absorption is not None and self.emission is None:
+            yield "emission", "missing, expected a spectrum, since there is absorption"
+        elif self.absorption is None and self.dyes is None and self.reradiation is None:
+            yield "absorption", "missing, expected absorption and emission, dyes, or reradiation"
+
+
+@node
 class Mirror(Material):
     """type = "mirror": reflects the same share at every angle."""
 
@@ -335,6 +371,7 @@ MATERIALS = {
     "oren-nayar": OrenNayar,
     "phong": Phong,
     "plastic": Plastic,
+    "fluorescent": Fluorescent,
     "mirror": Mirror,
     "conductor": Conductor,
     "dielectric": Dielectric,

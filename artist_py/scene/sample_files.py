@@ -19,14 +19,14 @@ def read_samples(path, column=1):
     """
     problems, samples = [], []  # samples: (line, wavelength, value)
     is_first = True
-    for line, text in enumerate(_lines(path), start=1):
-        fields = _fields(text)
+    for line, text in enumerate(text_lines(path), start=1):
+        fields = fields_of(text)
         if not fields:
             continue
         try:
             samples.append((line, *_sample(fields, column)))
         except ValueError as error:
-            if not (is_first and _number(fields[0]) is None):
+            if not (is_first and number_of(fields[0]) is None):
                 problems.append(Problem(str(error), str(path), line))
         is_first = False
     problems += [Problem(message, str(path), line) for line, message in _order_problems(samples)]
@@ -37,7 +37,8 @@ def read_samples(path, column=1):
     return tuple(sample[1] for sample in samples), tuple(sample[2] for sample in samples)
 
 
-def _lines(path):
+def text_lines(path):
+    """The lines of a text file; raises SceneError."""
     try:
         with open(path, "rb") as file:
             content = file.read()
@@ -53,7 +54,7 @@ def _lines(path):
         return content.decode("latin-1").splitlines()
 
 
-def _fields(text):
+def fields_of(text):
     """The columns of one line; none if it is a comment."""
     text = text.partition("#")[0].strip()
     if not text or text.startswith(";"):
@@ -71,7 +72,7 @@ def _sample(fields, column):
     """(wavelength, value); raises ValueError with the message for the user."""
     if len(fields) <= column:
         raise ValueError(f"expected {column + 1} columns or more, found {len(fields)}")
-    wavelength, value = _number(fields[0]), _number(fields[column])
+    wavelength, value = number_of(fields[0]), number_of(fields[column])
     if wavelength is None or not 0 < wavelength < math.inf:
         raise ValueError(expected("a wavelength in nm", fields[0]))
     if value is None or not math.isfinite(value):
@@ -79,7 +80,8 @@ def _sample(fields, column):
     return wavelength, value
 
 
-def _number(field):
+def number_of(field):
+    """The number that a column holds, or `None`."""
     try:
         return float(field)
     except ValueError:

@@ -92,6 +92,7 @@ material_dtype = np.dtype(
         ("is_sharp", "i4"),  # 1: its lobe is too narrow to be merged at
         ("medium", "i4"),  # dielectric: its row in `Scene.media`, from 1
         ("texture", "i4"),  # row of the textures that replaces `reflectance`, or -1
+        ("fluorescence", "i4"),  # row of the tables of `Fluorescence`, or -1
         ("ior", "f8"),  # index of refraction of a dielectric or a coat where it does not depend on wavelength
         ("transmittance", "f8"),  # plastic: share of diffuse light from outside that enters the coat
         ("roughness", "f8"),  # Oren-Nayar: standard deviation of facet slopes' angle, radians
@@ -224,6 +225,22 @@ class Textures(NamedTuple):
     texels: Table | None  # uint16 (n,), see bsdf/reflectance.py; absent where no texture is an image
 
 
+class Fluorescence(NamedTuple):
+    """Reradiation between the sets of wavelengths of an iteration, a row per fluorescent material (theory 3.2).
+
+    With M sets of C wavelengths: `towards_eye` holds R(out, in) v(in) for lane (j, m, k), in being wavelength j of set
+    m + 1 and out wavelength k of set m; `towards_light` the same numbers for lane (k, m + 1, j). See core/sets.py.
+    """
+
+    towards_eye: Table  # float32 (rows, C M C)
+    towards_light: Table  # float32 (rows, C M C)
+    survival: (
+        Table  # float64 (rows,): the most that is scattered of light at any of the wavelengths, at most 1
+    )
+    zero: object  # Spectrum of M C zeros
+    matrix: object  # Spectrum of M C C lanes, with which eye subpaths start: 1 from each wavelength of set 0 to itself
+
+
 class Needs(NamedTuple):
     """What the scene needs: `True`, or `None` for what is left out of its kernels."""
 
@@ -258,6 +275,7 @@ class Needs(NamedTuple):
     hidden_emitters: bool | None = None  # an emitter that the camera does not see
     one_sided: bool | None = None  # a material that is black from behind
     textures: bool | None = None
+    fluorescence: bool | None = None
     shared_wavelengths: bool | None = None
 
 
@@ -301,3 +319,4 @@ class Scene(NamedTuple):
     media: Table | None  # medium_dtype; absent where no dielectric touches another
     textures: Textures | None
     needs: Needs
+    fluorescence: Fluorescence | None = None  # of an iteration; absent where nothing fluoresces

@@ -4,7 +4,9 @@ import math
 from typing import NamedTuple
 
 from ..bsdf.dispatch import evaluate_bsdf, pdf_bsdf
+from ..bsdf.fluorescence import joined_light, reradiation_factor, scattered_light
 from ..core.frame import to_local
+from ..core.sets import chosen
 from ..core.spectra import black
 from ..core.vector import Spectrum, dot
 from ..emitters.dispatch import (
@@ -31,6 +33,7 @@ class Scattering(NamedTuple):
     """A BSDF evaluated for one more direction; densities hold the survival probability."""
 
     f_cos: Spectrum  # f |cos| with the shading normal
+    glow: float  # the same of f_fl, for what is reradiated at other wavelengths (theory 3.1)
     pdf_fwd: float  # of sampling the direction, sr^-1
     pdf_rev: float  # of sampling back along the subpath when coming from the direction, sr^-1
     cos_theta: float  # |cos| with the geometric normal
@@ -51,6 +54,7 @@ def scattering_towards(scene, vertex, wi_world, wavelengths, survival, light_wal
     adjoint = adjoint_factor(light_walk, smooth, vertex, wi_world, wi)
     return Scattering(
         f * (abs(wi.z) * adjoint),
+        reradiation_factor(scene.fluorescence, scene.needs, material, vertex.wo, wi) * abs(wi.z) * adjoint,
         pdf * survival if agrees else 0.0,
         pdf_rev * survival if vertex.is_sampled_back else 0.0,
         abs(dot(wi_world, vertex.surface.normal)),
@@ -118,7 +122,10 @@ def _to_light(emitters, scene, counts, vertex, partial, survival, wavelengths, u
         bracket(counts, partial, there.pdf_rev),
     )
     radiance = emitted_radiance(scene, emitter, -wi, wavelengths)
-    return Connected(radiance * there.f_cos * (weight / pdf_light), 1, weight)
+    material = scene.materials[vertex.surface.material]
+    scattered = scattered_light(scene.fluorescence, material, radiance, there.f_cos, there.glow)
+    radiance = chosen(scene.fluorescence, radiance * there.f_cos, scattered) * (weight / pdf_light)
+    return Connected(radiance, 1, weight)
 
 
 @function
@@ -152,23 +159,35 @@ def connect_vertices(
         there.pdf_fwd * here.cos_theta / distance_squared,
         bracket(counts, eye_partial, here.pdf_rev),
     )
-    value = light.throughput * here.f_cos * there.f_cos * (weight / (counts.vc * distance_squared))
-    return Connected(value, 1, weight)
+    materials = scene.materials
+    light_material, eye_material = materials[light.vertex.surface.material], materials[eye.surface.material]
+    joined = joined_light(scene.fluorescence, light.throughput, light_material, there, eye_material, here)
+    value = chosen(scene.fluorescence, light.throughput * here.f_cos * there.f_cos, joined)
+    return Connected(value * (weight / (counts.vc * distance_squared)), 1, weight)
+
+
+class Seen(NamedTuple):
+    """What the lens sees of a light vertex per light throughput, weighted: as `Scattering`, and as `Connected`."""
+
+    f_cos: Spectrum
+    glow: float
+    rays: int
+    weight: float
 
 
 @function
 def connect_to_camera(scene, counts, vertex, partial, survival, sensor, wavelengths):
     """A light vertex joined with the lens, with its weight (1.16); pixel value per light throughput and light path."""
-    nothing = no_connection(wavelengths)
     distance_squared = dot(sensor.towards, sensor.towards)
     wi = sensor.towards * (1.0 / math.sqrt(distance_squared))
     there = scattering_towards(scene, vertex, wi, wavelengths, survival, True)
     if there.is_black:
-        return nothing
+        return Seen(black(wavelengths), 0.0, 0, 0.0)
     if is_blocked(scene, vertex.surface, wi, sensor.position):
-        return Connected(black(wavelengths), 1, 0.0)
+        return Seen(black(wavelengths), 0.0, 1, 0.0)
     camera_density = sensor.pdf_solid_angle * there.cos_theta / distance_squared
     lens_ratio = there.pdf_fwd * sensor.lens_area / distance_squared
     light_bracket = bracket(counts, partial, there.pdf_rev)
     weight = weight_of_light_image(counts, camera_density, light_bracket, lens_ratio)
-    return Connected(there.f_cos * (weight * sensor.importance / distance_squared), 1, weight)
+    scale = weight * sensor.importance / distance_squared
+    return Seen(there.f_cos * scale, there.glow * scale, 1, weight)

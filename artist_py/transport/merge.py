@@ -3,8 +3,10 @@
 from typing import NamedTuple
 
 from ..bsdf.dispatch import evaluate_bsdf, pdf_bsdf
+from ..bsdf.fluorescence import reradiation_factor, scattered_light
 from ..core.affine import load_vec3
 from ..core.frame import to_local
+from ..core.sets import chosen, received
 from ..core.spectra import black
 from ..core.vector import Spectrum, dot
 from ..jit import function
@@ -67,7 +69,7 @@ def merge_at(scene, method, grid, merging, stored, survival, limits, tables, pla
                     value = merged.value * _kernel(merging.epanechnikov, distance_squared)
                     total = total + value
                     count += 1
-                    value = stored.throughput * value * merging.normalization
+                    value = received(scene.fluorescence, stored.throughput, value) * merging.normalization
                     record(tables, scene.spectra, place, VM, length, stored.length, value, merged.weight)
     return Merged(total * merging.normalization, count)
 
@@ -116,7 +118,10 @@ def _merge(scene, method, counts, merging, photon, throughput, stored, survival,
         method.techniques.merge_once, scene, counts, photon, stored, material, wi, pdf, survival, wavelengths
     )
     shading = _shading_factor(scene.needs.smooth_triangles, normal, direction, wi)
-    return MergedPhoton(throughput * f * (weight * shading), weight)
+    glow = reradiation_factor(scene.fluorescence, scene.needs, material, vertex.wo, wi)
+    scattered = scattered_light(scene.fluorescence, material, throughput, f, glow)
+    value = chosen(scene.fluorescence, throughput * f, scattered) * (weight * shading)
+    return MergedPhoton(value, weight)
 
 
 @function

@@ -4,8 +4,10 @@ import math
 from typing import NamedTuple
 
 from ..bsdf.dispatch import evaluate_bsdf, pdf_bsdf
+from ..bsdf.fluorescence import reradiation_factor, scattered_light
 from ..core.frame import to_local
 from ..core.rng import random_pair
+from ..core.sets import chosen, received
 from ..core.spectra import black
 from ..core.vector import Spectrum, dot
 from ..emitters.dispatch import (
@@ -70,7 +72,10 @@ def _connect(emitters, scene, vertex, wavelengths, stream, pair, u_select):
     # The balance heuristic over the density: w / p = 1 / (p + p').
     pdf_hit = pdf_scatter * can_be_hit(scene.needs.surfaceless_emitters, emitter)
     weight = abs(wi.z) / (pdf_light + pdf_hit)
-    radiance = emitted_radiance(scene, emitter, -wi_world, wavelengths) * f * weight
+    radiance = emitted_radiance(scene, emitter, -wi_world, wavelengths)
+    glow = reradiation_factor(scene.fluorescence, scene.needs, material, vertex.wo, wi)
+    scattered = scattered_light(scene.fluorescence, material, radiance, f, glow)
+    radiance = chosen(scene.fluorescence, radiance * f, scattered) * weight
     return Connection(radiance, 1, balance(pdf_light, pdf_hit))
 
 
@@ -134,5 +139,6 @@ def _sum_of_background(first, records, scene, path, length, place, tables):
                 weight = balance(path.pdf_solid_angle, pdf_light)
             radiance = emitted_radiance(scene, emitter, -path.direction, place.wavelengths) * weight
             total = total + radiance
-            record(tables, scene.spectra, place, HIT, length, length, path.throughput * radiance, weight)
+            contribution = received(scene.fluorescence, path.throughput, radiance)
+            record(tables, scene.spectra, place, HIT, length, length, contribution, weight)
     return total

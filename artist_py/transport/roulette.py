@@ -3,8 +3,8 @@
 from typing import NamedTuple
 
 from ..bsdf.dispatch import survival_bsdf
+from ..bsdf.fluorescence import brightness
 from ..core.rng import random_number
-from ..core.vector import lane_max
 from ..jit import function
 from .subpath import Path, with_throughput
 
@@ -17,7 +17,7 @@ class Limits(NamedTuple):
 
 
 @function
-def survival_probability(limits, length, path):
+def survival_probability(fluorescence, limits, length, path):
     """Probability that `path`, about to get its edge number `length`, goes on.
 
     It depends on the throughput and so stays out of all MIS weights (theory 1.8). The n^2 that refraction has put into
@@ -26,20 +26,20 @@ def survival_probability(limits, length, path):
     """
     if length <= limits.roulette_length:
         return 1.0
-    return min(1.0, lane_max(path.throughput) * path.radiance_scale)
+    return min(1.0, brightness(fluorescence, path.throughput) * path.radiance_scale)
 
 
 @function
-def is_ended_by_roulette(limits, stream, length, path):
+def is_ended_by_roulette(fluorescence, limits, stream, length, path):
     """Whether the path ends here."""
-    survival = survival_probability(limits, length, path)
+    survival = survival_probability(fluorescence, limits, length, path)
     return survival < 1.0 and random_number(stream, length) >= survival
 
 
 @function
-def after_roulette(limits, length, path):
+def after_roulette(fluorescence, limits, length, path):
     """The path that survived, its throughput made up for those that did not."""
-    survival = survival_probability(limits, length, path)
+    survival = survival_probability(fluorescence, limits, length, path)
     return with_throughput(path, path.throughput * (1.0 / survival))
 
 
@@ -50,7 +50,15 @@ def local_survival(scene, vertex, wavelengths):
     Unlike the throughput it may therefore be part of the densities that weights compare.
     """
     material = scene.materials[vertex.surface.material]
-    return survival_bsdf(scene.needs, material, vertex.reflectance, scene.spectra, wavelengths)
+    return _local_survival(scene.fluorescence, scene, material, vertex.reflectance, wavelengths)
+
+
+@function
+def _local_survival(fluorescence, scene, material, reflectance, wavelengths):
+    elastic = survival_bsdf(scene.needs, material, reflectance, scene.spectra, wavelengths)
+    if fluorescence is None:
+        return elastic
+    return elastic if material.fluorescence < 0 else fluorescence.survival[material.fluorescence]
 
 
 @function

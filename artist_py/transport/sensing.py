@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from ..core.rng import random_pair
+from ..core.sets import first_lanes, given
 from ..core.spectra import spectrum_at
 from ..core.table import Table
 from ..core.vector import Spectrum, lane, lane_count, lane_sum, with_lane
@@ -23,35 +24,44 @@ class Bands(NamedTuple):
 class Sensing(NamedTuple):
     """Wavelengths and sensor of one iteration; `shared` is absent where every path has wavelengths of its own."""
 
-    zero: Spectrum  # zero at every wavelength of a path: says how many there are
+    zero: Spectrum  # zero at every wavelength of a path: says how many there are, in all sets
     ratio: (
         Spectrum | None
     )  # one at every wavelength, absent where no density depends on it: r of theory (2.6)
     nodes: Table  # float64 (n + 1,), see core/wavelengths.py
     shared: Table | None  # float64 (2, C): wavelengths in nm, and weights 1 / (C p) in nm
     bands: Bands | None
+    seen: Spectrum | None = (
+        None  # zero at those that the film sees, set 0; absent where there is only one set
+    )
+    start: Spectrum | None = (
+        None  # the first throughput of eye subpaths, where that is a matrix (core/sets.py)
+    )
 
 
 @function
 def wavelengths_of_path(sensing, stream, pair):
-    """`(wavelengths, weights)` of a path: its own, or those of the iteration."""
+    """`(wavelengths, weights)` of a path: its own, or those of the iteration; weights of those that the film sees."""
     return _wavelengths(sensing.shared, sensing, stream, pair)
 
 
 @function
 def _wavelengths(shared, sensing, stream, pair):
     if shared is None:
-        return sample_wavelengths(sensing.nodes, sensing.zero, random_pair(stream, pair)[0])
-    wavelengths, weights = sensing.zero, sensing.zero
-    for i in range(lane_count(sensing.zero)):
+        wavelengths, weights = sample_wavelengths(sensing.nodes, sensing.zero, random_pair(stream, pair)[0])
+        return wavelengths, first_lanes(weights, given(sensing.seen, weights))
+    wavelengths, weights = sensing.zero, given(sensing.seen, sensing.zero)
+    for i in range(lane_count(wavelengths)):
         wavelengths = with_lane(wavelengths, i, shared[0, i])
+    for i in range(lane_count(weights)):
         weights = with_lane(weights, i, shared[1, i])
     return wavelengths, weights
 
 
 @function
 def rgb_of(spectra, contribution, wavelengths):
-    """Linear RGB (r, g, b) of radiance times the weights of its wavelengths."""
+    """Linear RGB (r, g, b) of radiance times the weights of its wavelengths, the first of `wavelengths`."""
+    wavelengths = first_lanes(wavelengths, contribution)
     red = lane_sum(contribution * spectrum_at(spectra, RED, wavelengths))
     green = lane_sum(contribution * spectrum_at(spectra, GREEN, wavelengths))
     blue = lane_sum(contribution * spectrum_at(spectra, BLUE, wavelengths))
@@ -83,7 +93,7 @@ def add_sample(sensing, spectra, image, row, column, contribution, wavelengths):
 def _add_bands(bands, row, column, contribution, wavelengths):
     if bands is None:
         return
-    for i in range(lane_count(wavelengths)):
+    for i in range(lane_count(contribution)):
         band = int((lane(wavelengths, i) - bands.first) / bands.width)
         band = min(max(band, 0), bands.image.shape[2] - 1)
         bands.image[row, column, band] += lane(contribution, i) / bands.width

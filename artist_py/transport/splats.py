@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..core.vector import lane, lane_count
+from ..core.vector import lane
 from ..jit import function
 
 PROFILE_STEPS = 256  # samples of the filter per pixel
@@ -78,7 +78,7 @@ def store_splat(tables, pool, thread, record, pixel, value, technique, length, w
     pool.ends[thread, 0] = row + 1
     splat = pool.records[row]
     splat.pixel = pixel
-    for i in range(lane_count(value)):
+    for i in range(len(splat.value)):  # of several sets of wavelengths the first
         splat.value[i] = lane(value, i)
     _store_technique(tables, splat, technique, length, weight)
     record.n_splats += 1

@@ -4,9 +4,11 @@ import math
 from typing import NamedTuple
 
 from ..bsdf.dispatch import sample_bsdf
+from ..bsdf.fluorescence import ratio_after, throughput_after
 from ..bsdf.reflectance import reflectance_at
 from ..core.frame import Frame, frame_around, to_local, to_world
 from ..core.rng import random_pair
+from ..core.sets import chosen, given, repeated
 from ..core.vector import Spectrum, Vec3, dot, splat, vec3
 from ..geometry.surface import Surface, leave_surface
 from ..jit import function
@@ -19,7 +21,7 @@ class Path(NamedTuple):
 
     origin: Vec3
     direction: Vec3  # unit
-    throughput: Spectrum  # product of f |cos| / pdf so far
+    throughput: Spectrum  # product of f |cos| / pdf so far; of an eye subpath the matrix of core/sets.py
     pdf_solid_angle: float  # density of `direction` at `reference`, sr^-1; 0 if it is a delta direction
     reference: Vec3  # the last vertex
     radiance_scale: float  # (n here / n at the camera)^2, which the throughput has been divided by
@@ -77,7 +79,8 @@ class Vertex(NamedTuple):
 @function
 def start_path(origin, direction, sensing, media):
     """A path that leaves the camera."""
-    return Path(origin, direction, splat(sensing.zero, 1.0), 0.0, origin, 1.0, sensing.ratio, media, False)
+    throughput = given(sensing.start, splat(sensing.zero, 1.0))
+    return Path(origin, direction, throughput, 0.0, origin, 1.0, sensing.ratio, media, False)
 
 
 @function
@@ -171,14 +174,18 @@ def scatter(scene, vertex, path, wavelengths, stream, pair, u_lobe, light_walk):
     is_refracted = sample.wi.z * vertex.wo.z < 0.0
     beyond = media_beyond(needs.media, material, is_entering, path.media)
     adjoint = adjoint_factor(light_walk, needs.smooth_triangles, vertex, direction, sample.wi)
+    elastic = path.throughput * repeated(sample.weight, path.throughput)
+    glowing = throughput_after(
+        scene.fluorescence, needs, material, path.throughput, elastic, sample, vertex.wo, light_walk
+    )
     onwards = Path(
         leave_surface(surface, direction),
         direction,
-        path.throughput * sample.weight * adjoint,
+        chosen(scene.fluorescence, elastic, glowing) * adjoint,
         0.0 if sample.is_delta else sample.pdf,
         surface.position,
         path.radiance_scale * sample.eta * sample.eta,
-        sample.ratio,
+        ratio_after(scene.fluorescence, material, sample.ratio),
         beyond if is_refracted else path.media,
         not is_kept,
     )

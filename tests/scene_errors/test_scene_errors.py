@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from artist_py.errors import SceneError
+from artist_py.scene.compile import validate
 from artist_py.scene.reader import read_scene
 
 FOLDER = Path(__file__).parent
@@ -15,7 +16,7 @@ SCENES = sorted(path.stem for path in FOLDER.glob("*.toml"))
 def test_message(name, monkeypatch):
     monkeypatch.chdir(FOLDER)
     with pytest.raises(SceneError) as caught:
-        read_scene(f"{name}.toml")
+        validate(read_scene(f"{name}.toml"))
     assert str(caught.value) == Path(f"{name}.txt").read_text(encoding="utf-8").rstrip("\n")
 
 

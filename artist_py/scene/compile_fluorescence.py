@@ -1,0 +1,82 @@
+"""What a scene that fluoresces needs: tables by bins of 1 nm, and where its sets of wavelengths lie (theory 3.5)."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from artist_py.errors import SceneError
+from artist_py.film.wavelengths import excitation_density, inverse_cdf, wavelength_density
+from artist_py.scene.graph import Fluorescent
+from artist_py.scene.messages import show
+from artist_py.scene.where import problem
+
+EVENTS = 3  # fluorescent events in a row that densities of wavelengths think of
+
+
+@dataclass(frozen=True)
+class FluorescentScene:
+    """Reradiation of all fluorescent materials of a scene, and the distributions of its sets of wavelengths."""
+
+    matrices: np.ndarray  # R, 1 / nm, float64 (materials, bins out, bins in)
+    totals: (
+        np.ndarray
+    )  # share of the power that is scattered at all, by where it arrives; float64 (materials, bins)
+    set_nodes: tuple  # inverse distribution of each set, nm
+
+    @property
+    def n_sets(self):
+        """Number of sets of wavelengths, M."""
+        return len(self.set_nodes)
+
+
+def fluoresces(graph, used):
+    """Whether any of the materials used does."""
+    return any(isinstance(graph.materials.get(name), Fluorescent) for name in used)
+
+
+def with_shared_wavelengths(graph):
+    """The graph of a scene that fluoresces with shared wavelengths; raises SceneError where others are asked for."""
+    render = graph.render
+    if render.wavelengths != "shared" and _is_given(render, "wavelengths"):
+        message = f'expected "shared", since a material fluoresces, found {show(render.wavelengths)}'
+        raise SceneError([problem(render, "wavelengths", message)])
+    if render.integrator == "reference":
+        message = "the reference integrator knows no fluorescence, found a material that fluoresces"
+        raise SceneError([problem(render, "integrator", message)])
+    return replace(graph, render=replace(render, wavelengths="shared"))
+
+
+def _is_given(node, key):
+    """Whether a key was written, and not left to its default."""
+    if node.where is None:
+        return False
+    table = node.where.source.table
+    for name in node.where.keys:
+        table = table.get(name, {})
+    return key in table
+
+
+def fluorescent_scene(glows, sensor, light, first, n_sets):
+    """The `FluorescentScene` of all `Glow`s of a scene, or `None` if there are none.
+
+    `sensor` is the (3, bins) table of `sensor_table`, `light` the power per nm of all emitters (bins,).
+    """
+    if not glows:
+        return None
+    matrices = np.array([glow.matrix for glow in glows])
+    yields = matrices.sum(axis=1)
+    everywhere = _light_after_events(matrices.mean(axis=0), light)
+    seen = wavelength_density(sensor, everywhere)
+    mixture = excitation_density(seen, everywhere, yields.sum(axis=0))
+    densities = [seen if n_sets > 1 else mixture] + [mixture] * (n_sets - 1)
+    totals = np.minimum(np.array([glow.reflectance for glow in glows]) + yields, 1.0)
+    return FluorescentScene(matrices, totals, tuple(inverse_cdf(density, first) for density in densities))
+
+
+def _light_after_events(matrix, light):
+    """The light of the emitters, and what fluorescence makes of it, per nm (bins,)."""
+    everywhere, part = light.copy(), light
+    for _ in range(EVENTS):
+        part = matrix @ part
+        everywhere += part
+    return everywhere

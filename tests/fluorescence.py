@@ -1,0 +1,150 @@
+"""What fluorescent scenes should look like, worked out by linear algebra: on bins, or at an iteration's wavelengths.
+
+Rooms are two concentric spheres. By symmetry each is as bright everywhere; the inner one sees the outer one only, which
+sees the inner one with the share (r / R)^2 of what it sees, and itself with the rest. With both radiances in one
+vector, emission E and what is scattered once K, paths of up to n edges bring the sum of K^i E over i < n (theory 3.10).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from rendering import look, scene, shape
+
+from artist_py.film.accumulation import Film
+from artist_py.samplers.render_job import RenderSettings, Silence, sampler_for
+from artist_py.samplers.wavelengths import sets_of_wavelengths
+
+RANGE = [300, 780]
+INNER, OUTER = 0, 1
+RADII = (0.5, 1.5)
+SHARE = (RADII[0] / RADII[1]) ** 2
+DYES = [
+    {
+        "absorption": {"gaussian": [380, 28], "peak": 0.5},
+        "emission": {"gaussian": [470, 22]},
+        "quantum_yield": 0.9,
+    },
+    {
+        "absorption": {"gaussian": [480, 25], "peak": 0.45},
+        "emission": {"gaussian": [600, 25]},
+        "quantum_yield": 0.8,
+    },
+]
+CASCADE = {
+    "type": "fluorescent",
+    "reflectance": {"wavelengths": [300, 500, 620, 780], "values": [0.15, 0.17, 0.45, 0.5]},
+    "dyes": DYES,
+}
+ORANGE = {
+    "type": "fluorescent",
+    "reflectance": 0.3,
+    "reradiation": {"excitation": [460, 40], "emission": [590, 20], "strength": 0.55},
+}
+LAMP = {"spectrum": {"wavelengths": [300, 385, 500, 780], "values": [1.5, 2.0, 0.8, 1.2]}}
+GLIMMER = {"spectrum": {"wavelengths": [300, 420, 780], "values": [0.3, 0.5, 0.1]}}
+
+
+def room(seen=INNER, inner=ORANGE, outer=CASCADE, lamp=None, glimmer=None, **render):
+    """The compiled scene of two concentric spheres, seen from between them; `seen` is the one that fills the image."""
+    ends = {INNER: [0, 0, 0], OUTER: [0.1, -2, 0.05]}
+    return scene(
+        [
+            shape("sphere", "inner", center=[0, 0, 0], radius=RADII[0], emission=lamp or LAMP),
+            shape(
+                "sphere",
+                "outer",
+                center=[0, 0, 0],
+                radius=RADII[1],
+                reverse=True,
+                emission=glimmer or GLIMMER,
+            ),
+        ],
+        materials={"inner": inner, "outer": outer},
+        camera=look([0, -0.7, 0], ends[seen], 60),
+        film={"resolution": [32, 32]},
+        render={
+            "wavelength_range": RANGE,
+            "max_path_length": 5,
+            "merging": {"radius": 0.02, "alpha": 1, "light_paths": 4},
+            **render,
+        },
+    )
+
+
+class Surfaces(NamedTuple):
+    """Per surface and, of `scatter`, from lane to lane: what is emitted, and what becomes of light that arrives."""
+
+    emission: np.ndarray  # (2, lanes)
+    scatter: np.ndarray  # (2, lanes out, lanes in)
+    response: np.ndarray  # of the film (3, lanes)
+
+
+def on_bins(compiled):
+    """`Surfaces` over all bins of 1 nm: nothing is left to chance."""
+    reflectance, emission, matrices = _tables(compiled)
+    scatter = [np.diag(rho) + matrix for rho, matrix in zip(reflectance, matrices, strict=True)]
+    return Surfaces(emission, np.array(scatter), compiled.spectra[:3].astype(float))
+
+
+def on_sets(compiled, iteration):
+    """`Surfaces` at the wavelengths of an iteration, where fluorescence leads from each set to the one before."""
+    render, sets = compiled.graph.render, compiled.fluorescence.n_sets
+    wavelengths, weights = sets_of_wavelengths(
+        compiled.fluorescence.set_nodes, render.hero_count, render.seed, iteration
+    ).reshape(2, sets, -1)
+    bins = np.minimum((wavelengths - RANGE[0]).astype(int), RANGE[1] - RANGE[0] - 1)
+    reflectance, emission, matrices = _tables(compiled)
+    count, lanes = bins.shape[1], bins.size
+    scatter = np.array([np.diag(rho[bins.ravel()]) for rho in reflectance])
+    for m in range(sets):
+        source = (m + 1) % sets
+        block = matrices[:, bins[m][:, None], bins[source][None, :]] * weights[source]
+        scatter[:, m * count : (m + 1) * count, source * count : (source + 1) * count] += block
+    response = np.zeros((3, lanes))
+    response[:, :count] = compiled.spectra[:3, bins[0]] * weights[0]
+    return Surfaces(emission[:, bins.ravel()], scatter, response)
+
+
+def _tables(compiled):
+    """Reflectance, emission (2, bins) and matrices (2, bins, bins) of the inner and the outer sphere."""
+    scene, spectra = compiled.scene, compiled.spectra.astype(float)
+    materials, lamps = scene.materials.array[1:], scene.emitters.records.array
+    zero = np.zeros_like(compiled.fluorescence.matrices[0])
+    matrices = [compiled.fluorescence.matrices[i] if i >= 0 else zero for i in materials["fluorescence"]]
+    emission = spectra[lamps["spectrum"]] * lamps["scale"][:, None]
+    return spectra[materials["reflectance"]], emission, np.array(matrices)
+
+
+def colours(surfaces, edges):
+    """RGB of the inner and the outer sphere by paths of up to so many edges, (2, 3)."""
+    radiance, part = surfaces.emission.copy(), surfaces.emission
+    for _ in range(edges - 1):
+        around = np.array([part[OUTER], SHARE * part[INNER] + (1.0 - SHARE) * part[OUTER]])
+        part = np.einsum("soi,si->so", surfaces.scatter, around)
+        radiance += part
+    return radiance @ surfaces.response.T
+
+
+def enclosure_colour(compiled, iteration, edges=200):
+    """RGB of a room of one surface, which is as bright everywhere, at the wavelengths of an iteration (3,)."""
+    surfaces = on_sets(compiled, iteration)
+    radiance, part = surfaces.emission[0].copy(), surfaces.emission[0]
+    for _ in range(edges - 1):
+        part = surfaces.scatter[0] @ part
+        radiance = radiance + part
+    return surfaces.response @ radiance
+
+
+def iteration_colours(compiled, iterations):
+    """Mean RGB of the image of each iteration, (iterations, 3)."""
+    width, height = compiled.graph.film.resolution
+    film = Film(height, width)
+    found = []
+    with sampler_for(compiled, film, RenderSettings(iterations=iterations, threads=2), Silence()) as sampler:
+        sampler.compile_kernels(Silence())
+        for iteration in range(iterations):
+            before = film.sums.copy()
+            sampler.iterate(iteration)
+            found.append((film.sums - before).mean(axis=(0, 1)))
+    assert film.rejected_count == 0
+    return np.array(found)

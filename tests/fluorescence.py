@@ -135,8 +135,8 @@ def enclosure_colour(compiled, iteration, edges=200):
     return surfaces.response @ radiance
 
 
-def iteration_colours(compiled, iterations):
-    """Mean RGB of the image of each iteration, (iterations, 3)."""
+def iteration_images(compiled, iterations):
+    """The image of each iteration, (iterations, h, w, 3)."""
     width, height = compiled.graph.film.resolution
     film = Film(height, width)
     found = []
@@ -145,6 +145,11 @@ def iteration_colours(compiled, iterations):
         for iteration in range(iterations):
             before = film.sums.copy()
             sampler.iterate(iteration)
-            found.append((film.sums - before).mean(axis=(0, 1)))
+            found.append(film.sums - before)
     assert film.rejected_count == 0
     return np.array(found)
+
+
+def iteration_colours(compiled, iterations):
+    """Mean RGB of the image of each iteration, (iterations, 3)."""
+    return iteration_images(compiled, iterations).mean(axis=(1, 2))

@@ -63,7 +63,8 @@ def memory_estimate(compiled, settings):
         "auxiliary outputs": pixels * 60 if set(settings.aovs) - {"variance"} else 0,
         "geometry": sum(array.nbytes for array in arrays) + (emitters.records.nbytes if emitters else 0),
         "acceleration structure": BYTES_PER_FACE * faces,
-        "spectra": compiled.spectra.nbytes,
+        "spectra": compiled.spectra.nbytes
+        + (compiled.fluorescence.matrices.nbytes if compiled.fluorescence else 0),
         "textures": sum(image.nbytes for image in compiled.texture_images),
         "eye vertices": pixels * _bytes_per_eye_path(compiled),
         "light vertices": round(pixels * light_paths * _bytes_per_light_path(compiled)),

@@ -33,7 +33,7 @@ def scattered_light(fluorescence, material, light, f, factor):
         return elastic
     if factor == 0.0:
         return elastic
-    return elastic + _towards_eye(fluorescence, material, light) * factor
+    return elastic + reradiated(fluorescence, material, light) * factor
 
 
 @function
@@ -77,11 +77,12 @@ def _onwards(light_walk, fluorescence, material, throughput):
     if light_walk is None:
         coefficients = row_of(fluorescence.towards_light, material.fluorescence, fluorescence.matrix)
         return from_previous_set(coefficients, throughput, fluorescence.zero)
-    return _towards_eye(fluorescence, material, throughput)
+    return reradiated(fluorescence, material, throughput)
 
 
 @function
-def _towards_eye(fluorescence, material, light):
+def reradiated(fluorescence, material, light):
+    """What `light` at all wavelengths makes the material give off, per f_fl: the sum of (3.2)."""
     coefficients = row_of(fluorescence.towards_eye, material.fluorescence, fluorescence.matrix)
     return from_next_set(coefficients, light, fluorescence.zero)
 

@@ -27,7 +27,7 @@ ONLY = {
     "alias": ("core.alias_table", "sample_alias"),
     "lens": ("cameras.lens", "sample_aperture"),
     "diffuse": ("core.warp", "square_to_cosine_hemisphere"),
-    "fluorescence": ("core.sets", "row_of"),
+    "fluorescence": ("bsdf.fluorescence", "reradiated"),
 }
 
 SCRIPT = """

@@ -4,6 +4,7 @@ import math
 
 from ..core.frame import normalize
 from ..core.vector import dot
+from ..geometry.surface import ERROR_SCALE, largest
 from ..jit import function
 from .lens import through_lens
 
@@ -37,12 +38,20 @@ def sample_film(pixel_filter, x, y, u, v):
 def camera_ray(camera, film_x, film_y, u, v):
     """`(point on the lens, origin, unit direction)` through a film point in pixels, row 0 on top.
 
-    The ray's origin is the point on the lens, or nearer to the scene where the camera is far from it.
+    The ray begins just before the point on the lens, so that the eye may lie on a surface, or nearer to the scene where
+    the camera is far from it.
     """
     direction = camera.corner + camera.right * film_x + camera.down * film_y
     lens_point, direction = through_lens(camera.lens, camera, direction, u, v)
     direction = normalize(direction)
-    return lens_point, _start_at_sphere(camera.clip, lens_point, direction), direction
+    start = lens_point + direction * eye_relief(lens_point)
+    return lens_point, _start_at_sphere(camera.clip, start, direction), direction
+
+
+@function
+def eye_relief(lens_point):
+    """Length of the gap between the lens and rays that come from or go to it: the rounding error of its place."""
+    return ERROR_SCALE * largest(lens_point)
 
 
 @function

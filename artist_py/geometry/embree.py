@@ -213,7 +213,7 @@ def closest_hit(embree, origin, direction, t_far):
     record = np.zeros(RAYHIT_BYTES // 4 + 4, np.float32)
     record = record[(-record.ctypes.data % 16) // 4 :][: RAYHIT_BYTES // 4]
     ids = record.view(np.uint32)
-    record[0:3], record[4:7], record[8] = origin.values, direction.values, t_far
+    record[0:3], record[3], record[4:7], record[8] = origin.values, T_NEAR, direction.values, t_far
     ids[9], ids[17:20] = SEEN, INVALID_ID
     rtc.rtcIntersect1(embree, record.ctypes.data, None)
     return Hit(*(float(x) for x in record[[8, 15, 16]]), *(int(i) for i in ids[17:20]))
@@ -223,12 +223,14 @@ def is_occluded(embree, origin, direction, t_far):
     """Whether anything lies on the ray within (0, t_far)."""
     record = np.zeros(RAY_BYTES // 4 + 4, np.float32)
     record = record[(-record.ctypes.data % 16) // 4 :][: RAY_BYTES // 4]
-    record[0:3], record[4:7], record[8] = origin.values, direction.values, t_far
+    record[0:3], record[3], record[4:7], record[8] = origin.values, T_NEAR, direction.values, t_far
     record.view(np.uint32)[9] = BLOCKS_LIGHT
     rtc.rtcOccluded1(embree, record.ctypes.data, None)
     return bool(record[8] < 0.0)
 
 
+# Embree counts hits at its near end: rays from an eye on a surface through the origin would not leave it.
+T_NEAR = float(np.finfo(np.float32).tiny)
 _F32, _I32, _I64 = ir.FloatType(), ir.IntType(32), ir.IntType(64)
 _POINTER = ir.IntType(8).as_pointer()
 
@@ -259,7 +261,7 @@ def _query(builder, symbol, size, mask, embree, origin, direction, t_far):
         for i in range(3):
             ray.store(first + i, builder.fptrunc(builder.extract_element(vector, _I32(i)), _F32))
     zero = ir.Constant(_F32, 0.0)
-    ray.store(3, zero)  # tnear
+    ray.store(3, ir.Constant(_F32, T_NEAR))
     ray.store(7, zero)  # time
     ray.store(8, t_far)
     ray.store(9, _I32(mask))

@@ -19,7 +19,7 @@ from ..emitters.dispatch import (
 )
 from ..geometry.surface import leave_surface, offset_position
 from ..scene.tables import Camera, Filter, Scene
-from ..transport.connect import is_blocked, scattering_towards
+from ..transport.connect import before_lens, is_blocked, scattering_towards
 from ..transport.merge import Merging
 from ..transport.mis import Counts
 from ..transport.roulette import Limits
@@ -254,7 +254,8 @@ def splat(reference, light, i, sensor):
     edge = connecting_edge(light.nodes[i], lens)
     there = scattering(reference, light, i, edge.direction, True)
     surface = light.nodes[i].surface
-    if there.is_black or is_blocked(reference.scene, surface, edge.direction, sensor.position):
+    goal = before_lens(sensor.position, surface, edge.direction)
+    if there.is_black or is_blocked(reference.scene, surface, edge.direction, goal):
         return reference.sensing.zero
     path = joined(*up_to(light, i), edge, [lens], [])
     w = weight(reference, (LT, i + 1), path)

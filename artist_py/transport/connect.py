@@ -18,7 +18,7 @@ from ..emitters.dispatch import (
 )
 from ..emitters.emission import emission_over_next_event
 from ..geometry.embree import is_occluded
-from ..geometry.surface import leave_surface, offset_position
+from ..geometry.surface import ERROR_SCALE, largest, leave_surface, offset_position
 from ..jit import function
 from .mis import (
     bracket,
@@ -73,6 +73,12 @@ def is_blocked(scene, surface, towards, end):
     """Whether something stands between `surface` and the point `end` in the direction `towards`."""
     start = leave_surface(surface, towards)
     return is_occluded(scene.geometry.embree, start, end - start, 1.0)
+
+
+@function
+def before_lens(lens_point, surface, wi):
+    """Where a ray from `surface` in direction `wi` to a point on the lens ends: the eye may lie on a surface."""
+    return lens_point - wi * (ERROR_SCALE * max(surface.extent, largest(lens_point)))
 
 
 class Connected(NamedTuple):
@@ -183,7 +189,7 @@ def connect_to_camera(scene, counts, vertex, partial, survival, sensor, waveleng
     there = scattering_towards(scene, vertex, wi, wavelengths, survival, True)
     if there.is_black:
         return Seen(black(wavelengths), 0.0, 0, 0.0)
-    if is_blocked(scene, vertex.surface, wi, sensor.position):
+    if is_blocked(scene, vertex.surface, wi, before_lens(sensor.position, vertex.surface, wi)):
         return Seen(black(wavelengths), 0.0, 1, 0.0)
     camera_density = sensor.pdf_solid_angle * there.cos_theta / distance_squared
     lens_ratio = there.pdf_fwd * sensor.lens_area / distance_squared

@@ -55,7 +55,7 @@ def test_rays_through_the_film(view, resolution):
     reach = math.tan(math.radians(view["field_of_view"] / 2)) / min(width, height)
     for x, y in [(0, 0), (width, 0), (0, height), (width, height), (width / 2, height / 2), (3.25, 7.5)]:
         expected = forward + reach * ((2 * x - width) * right + (height - 2 * y) * up)
-        _, origin, direction = camera_ray(compiled.camera, x, y, 0.5, 0.5)
+        origin, _, direction = camera_ray(compiled.camera, x, y, 0.5, 0.5)
         position = origin.values / compiled.space.scale + compiled.space.centre
         assert np.allclose(direction.values, expected / np.linalg.norm(expected), atol=1e-14)
         assert np.allclose(position, view["position"], atol=1e-13)
@@ -75,7 +75,7 @@ def test_rays_through_the_lens(blades):
         focus = 3 * middle.values / middle.values[1]
         offsets = []
         for u, v in rng.random((50, 2)):
-            _, origin, direction = camera_ray(compiled.camera, x, y, u, v)
+            origin, _, direction = camera_ray(compiled.camera, x, y, u, v)
             start = origin.values / compiled.space.scale + compiled.space.centre
             along = (focus[1] - start[1]) / direction.values[1]
             assert np.allclose(start + along * direction.values, focus, atol=1e-13)

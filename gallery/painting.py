@@ -7,7 +7,7 @@ import numpy as np
 import artist_py
 from artist_py.compare.metrics import relmse
 from artist_py.evidence.entries import with_seed
-from artist_py.film.color import RGB_TO_XYZ
+from artist_py.film.color import RGB_TO_XYZ, decode_srgb, encode_srgb
 from artist_py.film.contact_sheet import contact_sheet
 from artist_py.film.output import write_display
 from artist_py.film.tonemap import ToneMapping
@@ -121,7 +121,8 @@ def paint_techniques(picture, canvas, threads):
     images = result.techniques
     parts = images.pictures()
     canvas.write("-map", parts["false_colour"])
-    canvas.write("-pyramid", contact_sheet(images, True, canvas.mapping), ToneMapping())
+    sheet = contact_sheet(images, True, canvas.mapping)
+    canvas.write("-pyramid", with_levels(sheet, settings["levels"]), ToneMapping())
     merged, connected = (float(np.mean(parts[name] @ RGB_TO_XYZ[1])) for name in ("merging", "connection"))
     return {
         "files": canvas.sizes,
@@ -131,6 +132,11 @@ def paint_techniques(picture, canvas, threads):
         "own_relmse": float(f"{result.statistics['error_estimate']:.3g}"),
         "merged_share": round(merged / (merged + connected), 4),
     }
+
+
+def with_levels(rgb, levels):
+    """Linear RGB in [0, 1] of which each channel has so many levels, evenly spaced where sRGB encodes them."""
+    return decode_srgb(np.round(encode_srgb(rgb) * (levels - 1)) / (levels - 1))
 
 
 PAINTERS = {

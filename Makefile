@@ -3,7 +3,7 @@ PYTHON ?= $(firstword $(foreach name,python3 python3.13 python3.12 python3.11,$(
 	$(name) -c 'import ensurepip, sys; sys.version_info >= (3, 11) and print("$(name)")' 2>/dev/null)))
 RUN = .venv/bin
 
-.PHONY: demo test setup format lint slow coverage warm bench gallery
+.PHONY: demo test setup format lint slow coverage warm bench gallery golden
 
 demo: setup
 	@mkdir -p out
@@ -39,6 +39,9 @@ bench: setup
 gallery: setup
 	$(RUN)/python scripts/make_mesh.py
 	$(RUN)/python -m gallery
+
+golden: setup
+	$(RUN)/python tests/golden/rewrite.py
 
 .venv/installed: pyproject.toml
 	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { \

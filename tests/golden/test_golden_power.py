@@ -1,0 +1,43 @@
+"""The golden images would show a small error: one is made on purpose."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+from golden_cases import CASES, FALSE_ALARM, read_golden
+
+CAUGHT = "cornell_box-bpt"
+PRECISION = 0.03  # relative standard error of a weighted mean image, at most
+MEDIAN_PRECISION = 0.003  # and that of half of them
+GREEN = 1  # light of one wavelength is green: its red and blue lie outside sRGB and are cut off
+
+
+def test_an_error_of_one_per_cent_in_the_weight_of_next_event_estimation_is_caught(tmp_path):
+    script = Path(__file__).parent / "render_wrong_weight.py"
+    child = subprocess.run(
+        [sys.executable, str(script), CAUGHT],
+        env={**os.environ, "ARTIST_CACHE_DIR": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    p, is_same = json.loads(child.stdout.splitlines()[-1])["whole"]
+    assert not is_same
+    assert p < FALSE_ALARM / (3 * len(CASES))
+
+
+def test_golden_images_are_precise():
+    errors = []
+    for case in CASES:
+        whole = read_golden(case).whole
+        errors.append(np.sqrt(whole.variance[GREEN]) / whole.mean[GREEN])
+    assert max(errors) < PRECISION
+    assert np.median(errors) < MEDIAN_PRECISION
+
+
+def test_there_are_twenty_and_every_integrator_is_among_them():
+    assert len(CASES) >= 20
+    assert {case.integrator for case in CASES} == {"pt", "lt", "bpt", "ppm", "bpm", "vcm"}

@@ -10,7 +10,7 @@ import numpy as np
 from golden_cases import CASES, FALSE_ALARM, read_golden
 
 CAUGHT = "cornell_box-bpt"
-PRECISION = 0.03  # relative standard error of a weighted mean image, at most
+PRECISION = 0.06  # relative standard error of a weighted mean image, at most
 MEDIAN_PRECISION = 0.003  # and that of half of them
 GREEN = 1  # light of one wavelength is green: its red and blue lie outside sRGB and are cut off
 
@@ -33,7 +33,7 @@ def test_golden_images_are_precise():
     errors = []
     for case in CASES:
         whole = read_golden(case).whole
-        errors.append(np.sqrt(whole.variance[GREEN]) / whole.mean[GREEN])
+        errors.append(np.sqrt(whole.variance[GREEN]) / abs(whole.mean[GREEN]))
     assert max(errors) < PRECISION
     assert np.median(errors) < MEDIAN_PRECISION
 

@@ -1,5 +1,7 @@
 """Tables in Markdown from results/*.json, for README.md here."""
 
+import json
+
 from .measure import HERE, load
 
 README = HERE / "README.md"
@@ -19,10 +21,15 @@ def rewrite_readme():
 def table(title, results, header, rows):
     """A section with one table, and the machine it is from."""
     machine = results["machine"]
-    lines = [f"\n### {title}", "", f"| {' | '.join(header)} |", f"|{' --- |' * len(header)}"]
-    lines += [f"| {' | '.join(map(str, row))} |" for row in rows]
+    lines = [f"\n### {title}", "", *markdown(header, rows)]
     origin = f"{results['date']}, {machine['processor']}, {machine['processors']} processors"
     return "\n".join([*lines, "", f"{origin}; load average at the end {machine['load_average']}.", ""])
+
+
+def markdown(header, rows):
+    """Lines of a table."""
+    lines = [f"| {' | '.join(header)} |", f"|{' --- |' * len(header)}"]
+    return lines + [f"| {' | '.join(map(str, row))} |" for row in rows]
 
 
 def speed():
@@ -231,4 +238,47 @@ def correlation():
     return table("Weights that know of shared photons", results, header, rows)
 
 
-WRITERS = (speed, luxcore, boxes, embree_share, start_up, memory, threads, triangles, samplers, correlation)
+def findings():
+    """Error against CPU seconds, a table per run of `artist converge`."""
+    parts = []
+    for path in sorted((HERE / "findings").glob("*/convergence.json")):
+        results = json.loads(path.read_text(encoding="utf-8"))
+        marks = results["marks"]
+        relmse = {(row["entry"], row["mark"]): row for row in results["summary"]}
+        rows = [
+            (
+                entry["label"],
+                *(f"{relmse[entry['label'], mark]['relmse']:.2g}" for mark in marks),
+                f"{relmse[entry['label'], marks[-1]]['smape']:.2f}",
+                slope_text(entry["slopes"]["relmse"]),
+            )
+            for entry in results["entries"]
+        ]
+        header = ("", *(f"relMSE, {mark:g} CPU s" for mark in marks), f"sMAPE, {marks[-1]:g} CPU s", "slope")
+        reference = results["reference"]
+        about = (
+            f"![{path.parent.name}](findings/{path.parent.name}/plot.svg)\n\n"
+            f"Reference: {' and '.join(reference['integrators'])}, own relMSE {reference['relmse']:.1g}."
+        )
+        parts.append("\n".join([f"\n### {path.parent.name}", "", about, "", *markdown(header, rows), ""]))
+    return "\n".join(parts)
+
+
+def slope_text(slope):
+    """The fitted exponent of the seconds, where there is one."""
+    return f"{slope['median']:.2f}" if slope else ""
+
+
+WRITERS = (
+    speed,
+    luxcore,
+    boxes,
+    embree_share,
+    start_up,
+    memory,
+    threads,
+    triangles,
+    samplers,
+    correlation,
+    findings,
+)

@@ -31,6 +31,7 @@ class RenderSettings:
     max_memory_bytes: int | None = None
     techniques: bool = False
     technique_length: int = 8
+    compile_apart: bool = False
 
 
 def compile_scene(graph, threads=None):

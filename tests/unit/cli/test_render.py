@@ -47,6 +47,7 @@ class TestRender:
             "max_memory_bytes": None,
             "techniques": False,
             "technique_length": 8,
+            "compile_apart": True,
         }
 
     def test_options_reach_scene_and_sampler(self, folder):

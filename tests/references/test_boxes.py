@@ -23,7 +23,7 @@ CROP = (
     256,
     512,
 )  # pixels x0, x1, y0, y1: both spheres, or the large one, and the floor before them
-ITERATIONS = {"bpt": 384, "vcm": 64, "ppm": 96}
+ITERATIONS = {"bpt": 384, "vcm": 160, "ppm": 96}
 METHODS = list(ITERATIONS)
 ONE_FAST = [pytest.param(name, marks=() if name == "vcm" else pytest.mark.slow) for name in METHODS]
 

@@ -102,7 +102,8 @@ def test_rays_are_counted():
 def test_time_ends_a_render():
     result = render(room(), iterations=None, time_seconds=0.3)
     assert 1 <= result.film.iterations < 10**6
-    assert 0.3 <= sum(result.statistics["phase_seconds"].values()) < 60
+    # What lies between phases, microseconds, is in none of them.
+    assert 0.29 <= sum(result.statistics["phase_seconds"].values()) < 60
     assert not result.interrupted
 
 

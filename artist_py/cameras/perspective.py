@@ -4,7 +4,7 @@ import math
 
 from ..core.frame import normalize
 from ..core.vector import dot
-from ..geometry.surface import ERROR_SCALE, largest
+from ..geometry.surface import largest, offset_position
 from ..jit import function
 from .lens import through_lens
 
@@ -44,14 +44,8 @@ def camera_ray(camera, film_x, film_y, u, v):
     direction = camera.corner + camera.right * film_x + camera.down * film_y
     lens_point, direction = through_lens(camera.lens, camera, direction, u, v)
     direction = normalize(direction)
-    start = lens_point + direction * eye_relief(lens_point)
+    start = offset_position(lens_point, direction, largest(lens_point), direction)
     return lens_point, _start_at_sphere(camera.clip, start, direction), direction
-
-
-@function
-def eye_relief(lens_point):
-    """Length of the gap between the lens and rays that come from or go to it: the rounding error of its place."""
-    return ERROR_SCALE * largest(lens_point)
 
 
 @function

@@ -17,9 +17,9 @@ from ..emitters.dispatch import (
     is_hidden,
     sample_emitter,
 )
-from ..geometry.surface import leave_surface, offset_position
+from ..geometry.surface import largest
 from ..scene.tables import Camera, Filter, Scene
-from ..transport.connect import before_lens, is_blocked, scattering_towards
+from ..transport.connect import scattering_towards
 from ..transport.merge import Merging
 from ..transport.mis import Counts
 from ..transport.roulette import Limits
@@ -27,6 +27,7 @@ from ..transport.sensing import Sensing
 from ..transport.shares import Chosen, is_chosen
 from ..transport.splats import choose_pixel
 from ..transport.subpath import is_on_side
+from ..transport.visibility import is_blocked
 from .lens_hits import is_seen
 from .methods import ALL
 from .pair import LIGHT_SEED
@@ -172,9 +173,8 @@ def next_event(reference, eye, index, stream, dimension):
     if not is_emitting_towards(emitter, point.normal, edge.direction):
         return nothing
     there = scattering(reference, eye, index, -edge.direction, None)
-    extent = max(point.extent, node.surface.extent)
-    end = offset_position(point.position, point.normal, extent, edge.direction)
-    if there.is_black or is_blocked(scene, node.surface, -edge.direction, end):
+    ends = point.position, point.normal, point.extent
+    if there.is_black or is_blocked(scene, node.surface, -edge.direction, *ends):
         return nothing
     path = joined([light], [], edge, *up_to(eye, index))
     w = weight(reference, (NEE, 1), path) / (point.pdf_solid_angle * emitter.pdf_select)
@@ -202,8 +202,8 @@ def connection(reference, eye, i, light, j):
     there = scattering(reference, light, j, edge.direction, True)
     if here.is_black or there.is_black:
         return reference.sensing.zero
-    goal = leave_surface(start.surface, edge.direction)
-    if is_blocked(reference.scene, end.surface, -edge.direction, goal):
+    far = start.surface
+    if is_blocked(reference.scene, end.surface, -edge.direction, far.position, far.normal, far.extent):
         return reference.sensing.zero
     path = joined(*up_to(light, j), edge, *up_to(eye, i))
     w = weight(reference, (VC, j + 1), path)
@@ -254,8 +254,8 @@ def splat(reference, light, i, sensor):
     edge = connecting_edge(light.nodes[i], lens)
     there = scattering(reference, light, i, edge.direction, True)
     surface = light.nodes[i].surface
-    goal = before_lens(sensor.position, surface, edge.direction)
-    if there.is_black or is_blocked(reference.scene, surface, edge.direction, goal):
+    ends = sensor.position, -edge.direction, largest(sensor.position)
+    if there.is_black or is_blocked(reference.scene, surface, edge.direction, *ends):
         return reference.sensing.zero
     path = joined(*up_to(light, i), edge, [lens], [])
     w = weight(reference, (LT, i + 1), path)

@@ -17,8 +17,7 @@ from ..emitters.dispatch import (
     sample_emitter,
 )
 from ..emitters.emission import emission_over_next_event
-from ..geometry.embree import is_occluded
-from ..geometry.surface import ERROR_SCALE, largest, leave_surface, offset_position
+from ..geometry.surface import largest
 from ..jit import function
 from .mis import (
     bracket,
@@ -27,6 +26,7 @@ from .mis import (
     weight_of_next_event,
 )
 from .subpath import adjoint_factor, is_on_side, on_geometric_side
+from .visibility import is_blocked
 
 
 class Scattering(NamedTuple):
@@ -68,19 +68,6 @@ def _may_leave(light_walk):
     return light_walk is not None
 
 
-@function
-def is_blocked(scene, surface, towards, end):
-    """Whether something stands between `surface` and the point `end` in the direction `towards`."""
-    start = leave_surface(surface, towards)
-    return is_occluded(scene.geometry.embree, start, end - start, 1.0)
-
-
-@function
-def before_lens(lens_point, surface, wi):
-    """Where a ray from `surface` in direction `wi` to a point on the lens ends: the eye may lie on a surface."""
-    return lens_point - wi * (ERROR_SCALE * max(surface.extent, largest(lens_point)))
-
-
 class Connected(NamedTuple):
     """What a connection brings, weighted, the shadow rays it took, and the weight: 0 if it brings nothing."""
 
@@ -114,10 +101,9 @@ def _to_light(emitters, scene, counts, vertex, partial, survival, wavelengths, u
         return nothing
     wi = towards * (1.0 / math.sqrt(dot(towards, towards)))
     there = scattering_towards(scene, vertex, wi, wavelengths, survival, None)
-    end = offset_position(point.position, point.normal, max(point.extent, vertex.surface.extent), -wi)
     if there.is_black:
         return nothing
-    if is_blocked(scene, vertex.surface, wi, end):
+    if is_blocked(scene, vertex.surface, wi, point.position, point.normal, point.extent):
         return Connected(black(wavelengths), 1, 0.0)
     pdf_light = point.pdf_solid_angle * emitter.pdf_select
     emission = emission_over_next_event(scene, emitter, point, towards, pdf_light)
@@ -155,8 +141,7 @@ def connect_vertices(
     if there.is_black:
         return nothing
     far = light.vertex.surface
-    extent = max(far.extent, eye.surface.extent)
-    if is_blocked(scene, eye.surface, wi, offset_position(far.position, far.normal, extent, -wi)):
+    if is_blocked(scene, eye.surface, wi, far.position, far.normal, far.extent):
         return Connected(black(wavelengths), 1, 0.0)
     weight = weight_of_connection(
         counts,
@@ -189,7 +174,8 @@ def connect_to_camera(scene, counts, vertex, partial, survival, sensor, waveleng
     there = scattering_towards(scene, vertex, wi, wavelengths, survival, True)
     if there.is_black:
         return Seen(black(wavelengths), 0.0, 0, 0.0)
-    if is_blocked(scene, vertex.surface, wi, before_lens(sensor.position, vertex.surface, wi)):
+    # The eye may lie on a surface.
+    if is_blocked(scene, vertex.surface, wi, sensor.position, -wi, largest(sensor.position)):
         return Seen(black(wavelengths), 0.0, 1, 0.0)
     camera_density = sensor.pdf_solid_angle * there.cos_theta / distance_squared
     lens_ratio = there.pdf_fwd * sensor.lens_area / distance_squared

@@ -20,12 +20,11 @@ from ..emitters.dispatch import (
     sample_emitter,
 )
 from ..emitters.infinite import is_in_background
-from ..geometry.embree import is_occluded
-from ..geometry.surface import leave_surface, offset_position
 from ..jit import function
 from .mis import balance
 from .recording import HIT, record
 from .subpath import is_on_side
+from .visibility import is_blocked
 
 
 class Connection(NamedTuple):
@@ -63,9 +62,7 @@ def _connect(emitters, scene, vertex, wavelengths, stream, pair, u_select):
     )
     if pdf_scatter == 0.0 or not is_on_side(scene.needs.smooth_triangles, vertex.surface, wi_world, wi):
         return Connection(black(wavelengths), 0, 0.0)
-    start = leave_surface(vertex.surface, wi_world)
-    end = offset_position(point.position, point.normal, max(point.extent, vertex.surface.extent), -wi_world)
-    if is_occluded(scene.geometry.embree, start, end - start, 1.0):
+    if is_blocked(scene, vertex.surface, wi_world, point.position, point.normal, point.extent):
         return Connection(black(wavelengths), 1, 0.0)
     f = evaluate_bsdf(scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, vertex.wo, wi)
     pdf_light = point.pdf_solid_angle * emitter.pdf_select

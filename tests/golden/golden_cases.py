@@ -145,12 +145,15 @@ def comparisons(image, golden):
 
 
 def write_golden(case, golden):
-    """Write an EXR: mean in R, G, B; its standard error and the weights as half floats; larger parts in the header."""
+    """Write an EXR: mean in R, G, B; its standard error; the weights as half floats; larger parts in the header.
+
+    Errors are floats: a half float would be 0 for those of nearly black pixels.
+    """
     import OpenImageIO as oiio
 
     channels = ("R", "G", "B", *(f"{layer}.{channel}" for layer in ("error", "weight") for channel in "RGB"))
     spec = oiio.ImageSpec(SIZE, SIZE, len(channels), "float")
-    spec.channelnames, spec.channelformats = channels, ("float",) * 3 + ("half",) * 6
+    spec.channelnames, spec.channelformats = channels, ("float",) * 6 + ("half",) * 3
     spec.attribute("compression", "zip")
     spec.attribute("DateTime", "1970:01:01 00:00:00")
     spec.attribute("replicates", golden.pixels.count)

@@ -6,8 +6,11 @@ import subprocess
 import sys
 from pathlib import Path
 
+import golden_cases
 import numpy as np
-from golden_cases import CASES, FALSE_ALARM, read_golden
+from golden_cases import CASES, FALSE_ALARM, SIZE, Golden, read_golden, write_golden
+
+from artist_py.compare.z_test import Moments
 
 CAUGHT = "cornell_box-bpt"
 PRECISION = 0.06  # relative standard error of a weighted mean image, at most
@@ -41,3 +44,16 @@ def test_golden_images_are_precise():
 def test_there_are_twenty_and_every_integrator_is_among_them():
     assert len(CASES) >= 20
     assert {case.integrator for case in CASES} == {"pt", "lt", "bpt", "ppm", "bpm", "vcm"}
+
+
+def test_files_keep_the_errors_of_nearly_black_pixels(tmp_path, monkeypatch):
+    monkeypatch.setattr(golden_cases, "IMAGES", tmp_path)
+    mean, variance = np.full((SIZE, SIZE, 3), 1e-9), np.full((SIZE, SIZE, 3), 1e-18)
+    moments = Moments(mean, variance, golden_cases.REPLICATES)
+    written = Golden(
+        moments, moments, Moments(np.ones(3), np.ones(3), golden_cases.REPLICATES), np.ones_like(mean)
+    )
+    write_golden(CASES[0], written)
+    stored = read_golden(CASES[0]).pixels
+    np.testing.assert_allclose(stored.mean, mean, rtol=1e-6)
+    np.testing.assert_allclose(stored.variance, variance, rtol=1e-6)

@@ -7,7 +7,7 @@ from fnmatch import fnmatch
 from pathlib import Path
 
 from .page import write_page
-from .plan import Manifest, all_pictures, details, update
+from .plan import Manifest, all_pictures, details, together, update
 
 FOLDER = Path(__file__).resolve().parent
 LIST, SCENES = FOLDER / "pictures.toml", FOLDER.parent / "scenes"
@@ -37,7 +37,7 @@ def main():
         print("interrupted; what is done is kept", file=sys.stderr)
         return 130
     finally:
-        write_page(FOLDER, pictures, manifest.records, details(LIST))
+        write_page(FOLDER, pictures, manifest.records, details(LIST), together(LIST))
     return 1 if failed else 0
 
 

@@ -8,12 +8,18 @@ from string import Template
 TEMPLATE = Path(__file__).with_name("page.html")
 
 
-def write_page(folder, pictures, records, details):
-    """Write the page of those pictures that have records; a file with the same content is left alone."""
+def write_page(folder, pictures, records, details, together=()):
+    """Write the page of those pictures that have records; a file with the same content is left alone.
+
+    `details` and `together` are those of plan.py.
+    """
     shown = [picture for picture in pictures if picture.name in records]
+    in_rows = {name for names, _ in together for name in names}
     kinds = {
         kind: "\n".join(
-            figure(picture, records[picture.name], details) for picture in shown if picture.kind == kind
+            figure(picture, records[picture.name], details)
+            for picture in shown
+            if picture.kind == kind and not (kind == "scene" and picture.name in in_rows)
         )
         for kind, figure in FIGURES.items()
     }
@@ -26,6 +32,7 @@ def write_page(folder, pictures, records, details):
         zooms=kinds["zoom"],
         techniques=kinds["techniques"],
         scenes=kinds["scene"],
+        together="\n".join(_together(names, text, shown, records) for names, text in together),
     )
     path = Path(folder) / "index.html"
     if not path.is_file() or path.read_text(encoding="utf-8") != text:
@@ -40,6 +47,13 @@ def _card(picture, record, details):
         f"<figcaption><strong>{escape(picture.name)}</strong> {escape(picture.text)}"
         f"<small>{_single_facts(record)}</small></figcaption></figure>"
     )
+
+
+def _together(names, text, shown, records):
+    """Pictures of several scenes, side by side."""
+    pictures = {picture.name: picture for picture in shown if picture.kind == "scene"}
+    cells = "".join(_card(pictures[name], records[name], {}) for name in names if name in pictures)
+    return f'<p>{escape(text)}</p><div class="grid">{cells}</div>'
 
 
 def _row(picture, record, details):
@@ -115,7 +129,9 @@ def _facts(record, separator=", "):
 def _row_facts(row, is_best):
     error = f"relMSE {figures(row['relmse'])}"
     error = f'<span class="best">{error}</span>' if is_best else error
-    return f"{row['cpu_seconds']:.1f} s, {_iterations(row)}<br>{error}"
+    # Rows that were rendered before it was measured do not have it.
+    symmetric = f"<br>sMAPE {figures(row['smape'])}" if "smape" in row else ""
+    return f"{row['cpu_seconds']:.1f} s, {_iterations(row)}<br>{error}{symmetric}"
 
 
 def _iterations(record):

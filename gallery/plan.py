@@ -99,6 +99,12 @@ def details(file):
     return {each["scene"]: each["detail"] for each in plan["equal_time"]["pictures"] if "detail" in each}
 
 
+def together(file):
+    """`[(names of scenes, text)]`: scenes whose pictures the page shows side by side, not among the others."""
+    plan = tomli.loads(Path(file).read_text(encoding="utf-8"))
+    return [(row["scenes"], row["text"]) for row in plan.get("together", {}).get("rows", ())]
+
+
 def opening_comment(path):
     """The first paragraph of the comment that a scene file begins with."""
     words = []

@@ -5,7 +5,9 @@ import sys
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
+from PIL import Image
 
 from artist_py.errors import OptionError
 
@@ -13,7 +15,8 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
 from gallery.page import write_page  # noqa: E402
-from gallery.plan import Manifest, all_pictures, details, opening_comment, update  # noqa: E402
+from gallery.painting import reduce_colours  # noqa: E402
+from gallery.plan import Manifest, all_pictures, details, opening_comment, together, update  # noqa: E402
 
 LIST = """
 [scene]
@@ -38,6 +41,9 @@ window = [0, 0.5, 0, 0.5]
 iterations = 4
 [[techniques.pictures]]
 scene = "room"
+[[together.rows]]
+scenes = ["ball", "room"]
+text = "A ball, a room"
 """
 ROOM = """# A room.
 # With a floor.
@@ -78,7 +84,8 @@ def gallery(tmp_path):
         pictures, manifest = all_pictures(tmp_path / "list.toml", scenes), Manifest(folder)
         manifest.forget_others(pictures)
         failed = update(pictures, manifest, paint, lambda text: None, force)
-        write_page(folder, pictures, manifest.records, details(tmp_path / "list.toml"))
+        rows = together(tmp_path / "list.toml")
+        write_page(folder, pictures, manifest.records, details(tmp_path / "list.toml"), rows)
         build.failed = failed
         return painted
 
@@ -88,7 +95,7 @@ def gallery(tmp_path):
 def facts_of(picture):
     """What a painter returns."""
     took = {"cpu_seconds": 1.0, "iterations": 3, "own_relmse": 0.012}
-    rows = {name: {**took, "relmse": 0.5} for name in picture.settings.get("integrators", ())}
+    rows = {name: {**took, "relmse": 0.5, "smape": 0.37} for name in picture.settings.get("integrators", ())}
     files = {file: [8, 4] for file in picture.files.values()}
     reference = {"integrator": "vcm", **took}
     return {
@@ -123,6 +130,33 @@ def test_comments_and_captions_do_not_count(gallery):
     assert gallery.build() == []
     page = (gallery.folder / "index.html").read_text()
     assert "A room. With walls." in page and "A &gt; B" in page
+
+
+def test_captions_say_both_errors(gallery):
+    gallery.build()
+    assert (gallery.folder / "index.html").read_text().count("relMSE 0.50</span><br>sMAPE 0.37") == 2
+
+
+def test_scenes_side_by_side_are_not_shown_twice(gallery):
+    gallery.build()
+    page = (gallery.folder / "index.html").read_text()
+    row, rest = page.split('<h2 id="together">')[1].split('<h2 id="scenes">')
+    assert "A ball, a room" in row and row.index("ball.png") < row.index("room.png")
+    assert page.count('src="ball.png"') == 1 and "<img" not in rest
+
+
+def test_a_palette_makes_a_png_smaller_and_keeps_what_it_shows(tmp_path):
+    """Of 16 levels of each channel, 16 apart, 4 remain: they are off by 8 or 24, by 16 in the mean."""
+    path = tmp_path / "noise.png"
+    pixels = np.random.default_rng(1).integers(0, 16, (64, 64, 3)).astype(np.uint8) * 16
+    Image.fromarray(pixels).save(path)
+    before = path.stat().st_size
+    reduce_colours(path, 64)
+    with Image.open(path) as image:
+        assert image.mode == "P" and len(image.getcolors()) <= 64
+        shown = np.asarray(image.convert("RGB"))
+    assert path.stat().st_size < 0.7 * before
+    assert np.abs(shown.astype(int) - pixels).mean() < 20
 
 
 @pytest.mark.parametrize("file", ["parts/walls.toml", "tile.png"])
@@ -205,6 +239,7 @@ def test_the_list_names_every_scene_once_and_no_file_twice():
     files = [file for each in pictures for file in each.files.values()]
     assert len(files) == len(set(files)) and len({each.name for each in pictures}) == len(pictures)
     assert all(each.scene.is_file() and (each.kind == "techniques" or each.text) for each in pictures)
+    assert {name for names, _ in together(ROOT / "gallery" / "pictures.toml") for name in names} <= set(shown)
 
 
 def test_windows_lie_in_their_pictures():

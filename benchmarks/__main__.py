@@ -49,6 +49,7 @@ def parse():
     parser.add_argument(
         "--quick", action="store_true", help="fewer repeats and smaller sizes: to try the scripts"
     )
+    parser.add_argument("--only", default="*", metavar="PATTERN", help="of findings, such as 'wavelengths_*'")
     parser.add_argument("--repeats", type=int, default=5, help="of every comparison (default: 5)")
     parser.add_argument(
         "--iterations", type=int, default=32, help="paths per pixel in comparisons (default: 32)"

@@ -1,58 +1,96 @@
-"""Error against CPU seconds of all integrators, and of the wavelength modes, by `artist converge`, one thread.
+"""Error against CPU seconds of integrators and wavelength modes, and what unneeded features cost: `artist converge`.
 
-Writes findings/SCENE/ (CSV, JSON and a plot), which README.md discusses.
+Writes findings/NAME/ (CSV, JSON and a plot), which README.md discusses. All with one thread.
 """
 
 import subprocess
 import sys
+from fnmatch import fnmatch
 from pathlib import Path
+from typing import NamedTuple
 
 from .measure import HERE, ROOT
 
 FOLDER = HERE / "findings"
 KEPT = ("convergence.csv", "convergence.json", "plot.svg")
-SIZE = "160x160"
-TIMES, QUICK_TIMES = "1,2,4,8", "0.5,1"
-REFERENCE_SECONDS, QUICK_REFERENCE_SECONDS = 60, 5
-INTEGRATORS = "pt,lt,bpt,ppm,bpm,vcm"
-# Scene, and what makes its reference: bpt, or vcm where bpt hardly finds the light.
-SCENES = {
-    "cornell_box": "bpt",
-    "box_glossy": "bpt",
-    "veach_room": "bpt",
-    "cone_caustic": "vcm",
-    "small_light": "vcm",
-    "sds_pool": "vcm",
+KEPT_OF_ABLATIONS = ("ablation.csv", "ablation.json")
+INTEGRATORS = ("pt", "lt", "bpt", "ppm", "bpm", "vcm")
+ABLATED = ("pt", "bpt", "vcm")
+QUICK_TIMES, QUICK_REFERENCE_SECONDS = "0.5,1", 5
+
+
+class Run(NamedTuple):
+    """One run of `artist converge`."""
+
+    scene: str
+    entries: tuple = INTEGRATORS
+    reference: str = "bpt"  # vcm where bpt hardly finds the light
+    size: str = "160x160"
+    times: str = "1,2,4,8"  # CPU seconds
+    reference_seconds: int = 60
+    settings: tuple = ()  # for all entries, KEY=VALUE
+
+
+def modes(*pairs):
+    """Entries with 1, 4 and 8 wavelengths for each (integrator, wavelength mode)."""
+    return tuple(
+        f"{integrator}:wavelengths={mode}:hero_count={count}"
+        for integrator, mode in pairs
+        for count in (1, 4, 8)
+    )
+
+
+# Methods that merge cannot have independent wavelengths, and pt has no light paths to rotate towards.
+MODES = modes(("pt", "independent"), ("pt", "shared"), ("vcm", "shared"), ("vcm", "rotate"))
+WAVELENGTHS = {"entries": MODES, "times": "1,2,4", "reference_seconds": 40}
+# Whatever fluoresces has shared wavelengths in every method.
+FLUORESCENCE = {"entries": ("pt", "lt", "bpt", "ppm", "vcm"), "size": "96x96", "reference_seconds": 60}
+CONVERGENCE = {
+    "cornell_box": Run("cornell_box"),
+    "box_glossy": Run("box_glossy"),
+    "veach_room": Run("veach_room"),
+    "cone_caustic": Run("cone_caustic", reference="vcm"),
+    "small_light": Run("small_light", reference="vcm"),
+    "sds_pool": Run("sds_pool", reference="vcm"),
+    "wavelengths_cornell_box": Run("cornell_box", size="96x96", **WAVELENGTHS),
+    "wavelengths_lights": Run("lights", reference="pt", size="192x45", **WAVELENGTHS),
+    "wavelengths_glass_sphere": Run("glass_sphere", reference="vcm", size="96x96", **WAVELENGTHS),
+    "fluorescent_spheres": Run("fluorescent_spheres", **FLUORESCENCE),
+    "fluorescent_room": Run("fluorescent_room", **FLUORESCENCE),
+    "cascade": Run("cascade", **FLUORESCENCE),
+    "highlighters": Run("highlighters", **{**FLUORESCENCE, "size": "120x75"}),
+    "black_light": Run("black_light", reference="vcm", **FLUORESCENCE),
 }
-MODES = ("shared", "independent", "rotate")
-WAVELENGTH_SCENES = {"cornell_box": ("bpt", "bpt"), "lights": ("bpt", "bpt"), "small_light": ("vcm", "vcm")}
+ABLATIONS = {
+    "ablation_cornell_box": Run("cornell_box", ABLATED, times="8"),
+    "ablation_glass_sphere": Run("glass_sphere", ABLATED, times="8"),
+}
 
 
 def run(options):
-    """Measure all, and keep what is small."""
-    for scene, reference in SCENES.items():
-        converge(scene, scene, INTEGRATORS, reference, options.quick)
-    for scene, (integrator, reference) in WAVELENGTH_SCENES.items():
-        variants = ",".join(
-            f"{integrator}:wavelengths={mode}:hero_count={count}"
-            for mode in MODES
-            for count in (1, 4, 8)
-            if integrator != "vcm" or mode != "independent"
-        )
-        converge(f"wavelengths_{scene}", scene, variants, reference, options.quick)
+    """Measure what `options.only` asks for, by default all, and keep what is small."""
+    for name, each in CONVERGENCE.items():
+        if fnmatch(name, options.only):
+            seconds = QUICK_REFERENCE_SECONDS if options.quick else each.reference_seconds
+            reference = ("--repeat", "2", "--axis", "cpu", "--reference-integrator", each.reference)
+            measure(name, each, options.quick, (*reference, "--make-reference", f"{seconds}s"), KEPT)
+    for name, each in ABLATIONS.items():
+        if fnmatch(name, options.only):
+            measure(name, each, options.quick, ("--ablate",), KEPT_OF_ABLATIONS)
 
 
-def converge(name, scene, integrators, reference, quick):
+def measure(name, each, quick, arguments, kept):
     """One run of the command, from which the folder NAME keeps the small files."""
     print(f"  {name}", flush=True)
     folder = ROOT / "out" / "findings" / name
     command = [
-        str(Path(sys.executable).with_name("artist")), "converge", f"scenes/{scene}.toml",
-        "--integrators", integrators, "--times", QUICK_TIMES if quick else TIMES, "--axis", "cpu",
-        "--threads", "1", "--repeat", "2", "--size", SIZE, "--reference-integrator", reference,
-        "--make-reference", f"{QUICK_REFERENCE_SECONDS if quick else REFERENCE_SECONDS}s", "-o", str(folder),
+        str(Path(sys.executable).with_name("artist")), "converge", f"scenes/{each.scene}.toml",
+        "--integrators", ",".join(each.entries), "--times", QUICK_TIMES if quick else each.times,
+        "--threads", "1", "--size", each.size, *arguments, "-o", str(folder),
     ]  # fmt: skip
+    for setting in each.settings:
+        command += ["--set", setting]
     subprocess.run(command, check=True, cwd=ROOT)  # noqa: S603 - our own command
     (FOLDER / name).mkdir(parents=True, exist_ok=True)
-    for file in KEPT:
+    for file in kept:
         (FOLDER / name / file).write_bytes((folder / file).read_bytes())

@@ -44,7 +44,7 @@ def modes(*pairs):
 MODES = modes(("pt", "independent"), ("pt", "shared"), ("vcm", "shared"), ("vcm", "rotate"))
 WAVELENGTHS = {"entries": MODES, "times": "1,2,4", "reference_seconds": 40}
 # Whatever fluoresces has shared wavelengths in every method.
-FLUORESCENCE = {"entries": ("pt", "lt", "bpt", "ppm", "vcm"), "size": "96x96", "reference_seconds": 60}
+FLUORESCENCE = {"entries": ("pt", "lt", "bpt", "ppm", "vcm"), "size": "96x96", "reference_seconds": 40}
 CONVERGENCE = {
     "cornell_box": Run("cornell_box"),
     "box_glossy": Run("box_glossy"),
@@ -60,6 +60,12 @@ CONVERGENCE = {
     "cascade": Run("cascade", **FLUORESCENCE),
     "highlighters": Run("highlighters", **{**FLUORESCENCE, "size": "120x75"}),
     "black_light": Run("black_light", reference="vcm", **FLUORESCENCE),
+    "black_light_caustic": Run(
+        "black_light",
+        reference="vcm",
+        settings=("film.crop=[99, 191, 177, 209]",),  # the floor in the shadow of the glass ball
+        **{**FLUORESCENCE, "size": "224x224"},
+    ),
 }
 ABLATIONS = {
     "ablation_cornell_box": Run("cornell_box", ABLATED, times="8"),

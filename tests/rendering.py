@@ -15,6 +15,7 @@ from scipy import stats
 import artist_py
 from artist_py.scene.compile import compile_scene
 from artist_py.scene.reader import read_scene_text
+from artist_py.stress.toml import to_toml
 
 FALSE_ALARM = 1e-4  # probability that one comparison fails by chance
 ROUNDING = 1e-5  # relative; long paths carry float32
@@ -26,17 +27,9 @@ GREEN = 1
 # --- scenes -------------------------------------------------------------------------------------------------------
 
 
-def toml(value):
-    """A TOML value; tables become inline tables."""
-    if isinstance(value, dict):
-        return "{" + ", ".join(f'"{key}" = {toml(item)}' for key, item in value.items()) + "}"
-    if isinstance(value, list | tuple | np.ndarray):
-        return "[" + ", ".join(toml(item) for item in value) + "]"
-    if isinstance(value, str):
-        return f'"{value}"'
-    if isinstance(value, bool | np.bool_):
-        return str(bool(value)).lower()
-    return repr(int(value)) if isinstance(value, int | np.integer) else repr(float(value))
+def compile_tables(table):
+    """A `CompiledScene` of the tables of a scene file."""
+    return compile_scene(read_scene_text(to_toml(table)))
 
 
 def scene(shapes=(), *, emitters=(), materials=(), objects=(), instances=(), camera=None, film=(), render=()):
@@ -55,8 +48,7 @@ def scene(shapes=(), *, emitters=(), materials=(), objects=(), instances=(), cam
         "instances": list(instances),
         "emitters": list(emitters),
     }
-    lines = [f"{name} = {toml(value)}" for name, value in table.items()]
-    return compile_scene(read_scene_text("\n".join(lines)))
+    return compile_tables(table)
 
 
 def with_render(compiled, **settings):

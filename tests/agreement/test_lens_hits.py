@@ -7,10 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from rendering import GREEN, MONOCHROME, assert_mean, diffuse, look, radiance, render, toml
-
-from artist_py.scene.compile import compile_scene
-from artist_py.scene.reader import read_scene_text
+from rendering import GREEN, MONOCHROME, assert_mean, compile_tables, diffuse, look, radiance, render
 
 SIZE, RADIUS, FOCUS, BEHIND = (
     24,
@@ -46,7 +43,7 @@ def seen_in_mirror(integrator, **settings):
         ],
         "emitters": [{"type": "point", "position": [0, -1, 0], "spectrum": 1, "intensity": INTENSITY}],
     }  # fmt: skip
-    return compile_scene(read_scene_text("\n".join(f"{name} = {toml(v)}" for name, v in table.items())))
+    return compile_tables(table)
 
 
 def expected_mean():

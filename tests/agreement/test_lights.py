@@ -14,15 +14,12 @@ from rendering import (
     assert_mean,
     assert_same,
     assert_uniform,
+    compile_tables,
     diffuse,
     look,
     radiance,
     shape,
-    toml,
 )
-
-from artist_py.scene.compile import compile_scene
-from artist_py.scene.reader import read_scene_text
 
 DARK = {
     "point": {"type": "point", "position": [0, 0, 1], "spectrum": 0},
@@ -70,7 +67,7 @@ def lit(sky):
             "shapes": [*shapes, panel],
             "emitters": [*emitters, *dark],
         }
-        return compile_scene(read_scene_text("\n".join(f"{name} = {toml(v)}" for name, v in table.items())))
+        return compile_tables(table)
 
     return build
 

@@ -2,14 +2,13 @@
 
 import numpy as np
 import pytest
-from rendering import diffuse, look, render, scene, shape, toml
+from rendering import compile_tables, diffuse, look, render, scene, shape
 from scipy import stats
 
 from artist_py.cli.main import main
 from artist_py.film.color import RGB_TO_XYZ
 from artist_py.film.reading import read_image
-from artist_py.scene.compile import compile_scene
-from artist_py.scene.reader import read_scene_text
+from artist_py.stress.toml import to_toml
 
 ROUNDING = 2e-6  # of float32 sums, relative to the sum of all sizes
 CAMERA = {
@@ -108,8 +107,8 @@ class TestSums:
             {"type": "directional", "direction": [0.3, 1, -0.5], "spectrum": 1.0, "angle": 5.0},
             {"type": "point", "position": [-0.5, -0.2, 0.3], "spectrum": 0.2},
         ]
-        graph = read_scene_text(room_file(integrator, FILMS["all of it"], emitters=emitters))
-        result = render(compile_scene(graph), 3, techniques=True)
+        compiled = compile_tables(room_tables(integrator, FILMS["all of it"], emitters=emitters))
+        result = render(compiled, 3, techniques=True)
         assert result.techniques.weighted[0].any()  # the environment, seen from outside
         assert_adds_up(result.techniques.weighted, result.film.rgb)
 
@@ -168,9 +167,9 @@ class TestUnweighted:
         assert abs(difference) < stats.t.isf(5e-5, self.RENDERS - 1) * error + bias * expected.mean()
 
 
-def room_file(integrator, film, **more):
-    """The room as the text of a scene file."""
-    lines = {
+def room_tables(integrator, film, **more):
+    """The room as the tables of a scene file."""
+    return {
         "film": film,
         "camera": CAMERA,
         "render": {
@@ -180,12 +179,11 @@ def room_file(integrator, film, **more):
         "shapes": room_shapes(INSIDE),
         **more,
     }  # fmt: skip
-    return "\n".join(f"{key} = {toml(value)}" for key, value in lines.items())
 
 
 def test_files(tmp_path):
     file, output = tmp_path / "room.toml", tmp_path / "image.exr"
-    file.write_text(room_file("vcm", FILMS["cropped inside"]))
+    file.write_text(to_toml(room_tables("vcm", FILMS["cropped inside"])))
     stale = tmp_path / "image.techniques" / "length_05.exr"
     stale.parent.mkdir()
     stale.write_text("of an earlier render")

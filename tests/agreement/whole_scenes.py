@@ -16,13 +16,14 @@ import math
 from pathlib import Path
 
 import numpy as np
-from rendering import shape, toml
+from rendering import shape
 from scipy import stats
 from whole_scene_cases import CASES, SCENES
 
 import artist_py
 from artist_py.film.accumulation import Film
 from artist_py.samplers.render_job import RenderSettings, Silence, sampler_for
+from artist_py.stress.toml import to_toml
 
 SIZE, BLOCK, ITERATIONS = 64, 8, 32
 RADII = {"ppm": 0.01, "bpm": 0.01, "vcm": 0.004}  # in the scene's; the larger of two
@@ -85,15 +86,17 @@ def moved(item, offset):
 
 def with_everything(file, place, folder):
     """A scene file in `folder` that includes `file`, and has one of everything at `place`."""
-    lines = [f"include = [{toml(str(file))}]"]
-    lines.append(f"materials = {toml(MATERIALS)}")
-    lines.append(f"shapes = {toml([moved(each, place) for each in every_shape()])}")
-    lines.append(f"emitters = {toml(every_emitter())}")
     ball = shape("sphere", "every_matte", center=[0, 0, 0], radius=TINY)
-    lines.append(f"objects = {toml({'every': {'shapes': [ball]}})}")
-    lines.append(f"instances = {toml([{'object': 'every', 'transform': [{'translate': place}]}])}")
+    tables = {
+        "include": [str(file)],
+        "materials": MATERIALS,
+        "shapes": [moved(each, place) for each in every_shape()],
+        "emitters": every_emitter(),
+        "objects": {"every": {"shapes": [ball]}},
+        "instances": [{"object": "every", "transform": [{"translate": place}]}],
+    }
     path = Path(folder) / file.name
-    path.write_text("\n".join(lines), encoding="utf-8")
+    path.write_text(to_toml(tables), encoding="utf-8")
     return path
 
 

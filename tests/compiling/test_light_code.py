@@ -2,15 +2,13 @@
 
 import numba
 import pytest
-from rendering import MONOCHROME, diffuse, look, shape, toml
+from rendering import MONOCHROME, compile_tables, diffuse, look, shape
 
 from artist_py.core.table import Table
 from artist_py.core.vector import Spectrum, Vec3
 from artist_py.emitters.dispatch import emitted_radiance, pdf_emitter, sample_emitter
 from artist_py.emitters.emission import emission_over_next_event, sample_emission
 from artist_py.jit import kernel
-from artist_py.scene.compile import compile_scene
-from artist_py.scene.reader import read_scene_text
 from artist_py.transport.next_event import radiance_of_background
 from artist_py.transport.recording import Place
 from artist_py.transport.subpath import Path
@@ -52,7 +50,7 @@ def scene_with(emitters):
         "shapes": [ceiling],
         "emitters": emitters,
     }
-    return compile_scene(read_scene_text("\n".join(f"{name} = {toml(v)}" for name, v in table.items())))
+    return compile_tables(table)
 
 
 def compiled_code(emitters):

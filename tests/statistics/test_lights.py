@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 from chi_squared import SPHERE, ChiSquaredTest, Domain, cap, constant, disk_from_unit, turns
-from rendering import MONOCHROME, diffuse, look, shape, toml
+from rendering import MONOCHROME, compile_tables, diffuse, look, shape
 
 from artist_py.core.table import Table
 from artist_py.core.vector import Vec3, vec3
@@ -21,9 +21,7 @@ from artist_py.emitters.emission import (
 )
 from artist_py.emitters.environment import bilinear
 from artist_py.jit import kernel
-from artist_py.scene.compile import compile_scene
 from artist_py.scene.images import cell_means, solid_angles
-from artist_py.scene.reader import read_scene_text
 
 CASES = 5
 KINDS = ("point", "spot", "directional", "sun", "environment", "image")
@@ -114,7 +112,7 @@ def compiled(tmp_path_factory, texels):
         "shapes": [ball],
         "emitters": emitters,
     }
-    return compile_scene(read_scene_text("\n".join(f"{name} = {toml(v)}" for name, v in table.items())))
+    return compile_tables(table)
 
 
 def towards(compiled, kind, numbers):

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 from fluorescence import CASCADE, RANGE, colours, on_bins, on_sets, room
-from rendering import shape, toml
+from rendering import compile_tables, shape
 
-from artist_py.scene.compile import compile_scene
 from artist_py.scene.reader import read_scene_text
 from artist_py.scene.reradiation import glow_of
+from artist_py.stress.toml import to_toml
 
 CENTRES = np.arange(*RANGE) + 0.5
 MATRIX = """excitation,400,410,420,430
@@ -22,8 +22,8 @@ MATRIX = """excitation,400,410,420,430
 
 def material(**keys):
     """A `Fluorescent` of these keys."""
-    text = f'camera = {{type = "pinhole", position = [0, 0, 0], look_at = [1, 0, 0]}}\nmaterials.dye = {toml(keys)}'
-    return read_scene_text(text).materials["dye"]
+    camera = {"type": "pinhole", "position": [0, 0, 0], "look_at": [1, 0, 0]}
+    return read_scene_text(to_toml({"camera": camera, "materials": {"dye": keys}})).materials["dye"]
 
 
 def dye(**keys):
@@ -120,15 +120,15 @@ def test_more_power_is_never_given_off_than_absorbed():
 
 
 def test_a_scene_that_fluoresces_begins_in_the_ultraviolet():
-    text = "\n".join(
-        [
-            'camera = {type = "pinhole", position = [0, -4, 0], look_at = [0, 0, 0]}',
-            f"materials.dye = {toml(CASCADE)}",
-            'materials.plain = {type = "diffuse"}',
-            f"shapes = {toml([shape('sphere', 'NAME', center=[0, 0, 0], radius=1, emission=1)])}",
-        ]
-    )
-    glowing = compile_scene(read_scene_text(text.replace("NAME", "dye")))
-    plain = compile_scene(read_scene_text(text.replace("NAME", "plain")))
+    def lit(material):
+        return compile_tables(
+            {
+                "camera": {"type": "pinhole", "position": [0, -4, 0], "look_at": [0, 0, 0]},
+                "materials": {"dye": CASCADE, "plain": {"type": "diffuse"}},
+                "shapes": [shape("sphere", material, center=[0, 0, 0], radius=1, emission=1)],
+            }
+        )
+
+    glowing, plain = lit("dye"), lit("plain")
     assert glowing.wavelength_range == (300, 780) and glowing.graph.render.wavelengths == "shared"
     assert plain.wavelength_range == (380, 780) and plain.fluorescence is None

@@ -7,36 +7,12 @@ import sys
 from pathlib import Path
 
 import pytest
+from room import write_room
 
 from artist_py.cli.main import main
 from artist_py.evidence import ablation, reference
 from artist_py.film.reading import read_image
 
-SCENE = """
-[film]
-resolution = [12, 10]
-filter = "box"
-[camera]
-type = "pinhole"
-position = [0, -0.95, 0]
-look_at = [0, 1, 0]
-field_of_view = 80
-[render]
-max_path_length = 4
-[materials.wall]
-type = "diffuse"
-[[shapes]]
-type = "box"
-material = "wall"
-min = [-1, -1, -1]
-max = [1, 1, 1]
-reverse = true
-[[shapes]]
-type = "rectangle"
-corner = [-0.3, -0.3, 0.99]
-edges = [[0, 0.6, 0], [0.6, 0, 0]]
-emission = 5
-"""
 SHORT = ["--times", "0.02,0.04", "--make-reference", "0.05", "--threads", "1"]
 
 
@@ -45,7 +21,7 @@ def here(tmp_path, monkeypatch):
     """A folder with `room.toml`, where references are cached too."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(reference, "cache_root", lambda: tmp_path / "cache")
-    (tmp_path / "room.toml").write_text(SCENE)
+    write_room(tmp_path)
     return tmp_path
 
 

@@ -44,7 +44,10 @@ def tabulate(spectrum, first_nm, last_nm, purpose, extend=None):
         raise SceneError(found)
     extend = extend or ("zero" if purpose == "emission" else "hold")
     edges = np.arange(first_nm, last_nm + 1, dtype=np.float64)
-    return spectrum.scale * _AVERAGES[type(spectrum)](spectrum, edges, purpose, extend)
+    values = spectrum.scale * _AVERAGES[type(spectrum)](spectrum, edges, purpose, extend)
+    if purpose == "emission" and (message := check_emission(values, first_nm)):
+        raise SceneError([problem(spectrum, None, message)])
+    return values
 
 
 def _constant(spectrum, edges, purpose, extend):

@@ -329,6 +329,13 @@ def test_bad_files_are_refused_by_file_and_line(tmp_path, text, column, line, me
     assert message in problem.message
 
 
+def test_lights_of_files_are_not_negative(tmp_path):
+    path = write(tmp_path, "400 1\n500 -1\n600 1\n")
+    assert material(File(path)).min() < 0  # a property, whose bounds are its material's
+    with pytest.raises(SceneError, match="expected a radiance of at least 0, found -0.99 at 499 nm"):
+        light(File(path))
+
+
 def test_all_bad_lines_are_told_but_not_thousands(tmp_path):
     path = write(tmp_path, "nm R\n" + "x y\n" * 1000)
     with pytest.raises(SceneError) as caught:

@@ -30,11 +30,6 @@ def symmetric_error(image, reference):
     return 2.0 * np.abs(image - reference) / (np.abs(image) + np.abs(reference) + SYMMETRIC_OFFSET)
 
 
-def mse(image, reference):
-    """Mean squared error."""
-    return float(np.mean(squared_error(image, reference)))
-
-
 def relmse(image, reference):
     """Relative mean squared error. Of two independent noisy images it expects the sum of the errors of both."""
     return float(np.mean(relative_squared_error(image, reference)))

@@ -38,11 +38,6 @@ def rgb_to_xyz(rgb):
     return np.asarray(rgb) @ RGB_TO_XYZ.T
 
 
-def xyz_to_rgb(xyz):
-    """Linear sRGB of XYZ; negative outside the gamut."""
-    return np.asarray(xyz) @ XYZ_TO_RGB.T
-
-
 def xy_of_xyz(xyz):
     """Chromaticity (x, y); NaN for black."""
     xyz = np.asarray(xyz, np.float64)

@@ -2,14 +2,8 @@
 
 import json
 import math
-from pathlib import Path
 
 from artist_py.film.replacing import replacing
-
-
-def sidecar_path(image):
-    """Where the statistics of `image` go: the same name, ending in `.json`."""
-    return Path(image).with_suffix(".json")
 
 
 def write_sidecar(path, statistics):

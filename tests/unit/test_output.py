@@ -17,7 +17,7 @@ from artist_py.errors import OutputError
 from artist_py.film.image import FilmImage
 from artist_py.film.output import check_output, write_image
 from artist_py.film.reading import read_image
-from artist_py.film.sidecar import sidecar_path, write_sidecar
+from artist_py.film.sidecar import write_sidecar
 
 WIDTH, HEIGHT = 40, 30
 
@@ -253,8 +253,7 @@ class TestWholeOrNothing:
 
 def test_sidecar(tmp_path):
     """NumPy's numbers and arrays, and numbers that JSON does not know."""
-    path = sidecar_path(tmp_path / "ü.b.exr")
-    assert path.name == "ü.b.json"
+    path = tmp_path / "ü.b.json"
     write_sidecar(
         path, {"a": np.float32(0.5), "b": [np.nan, np.int64(3), np.arange(2)], "c": {1: float("inf")}}
     )

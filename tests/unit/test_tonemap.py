@@ -5,7 +5,7 @@ import OpenImageIO as oiio
 import pytest
 
 from artist_py.errors import OptionError, OutputError
-from artist_py.film.color import decode_srgb, xyz_of_xy, xyz_to_rgb
+from artist_py.film.color import XYZ_TO_RGB, decode_srgb, xyz_of_xy
 from artist_py.film.image import FilmImage
 from artist_py.film.output import write_display, write_image
 from artist_py.film.tonemap import ToneMapping, automatic_exposure, tone_mapped, white_point
@@ -64,7 +64,7 @@ class TestToneMapping:
         """Light of illuminant A, seen by an eye used to it, is grey; D65 is grey as it is."""
         x, y = white_point("A")
         assert (x, y) == pytest.approx((0.44757, 0.40745), abs=2e-5)  # CIE 15:2018
-        light = 0.3 * xyz_to_rgb(xyz_of_xy((x, y)))[None, None]
+        light = 0.3 * (XYZ_TO_RGB @ xyz_of_xy((x, y)))[None, None]
         shown = tone_mapped(light, ToneMapping(white_point=(x, y)))[0, 0].astype(int)
         assert np.ptp(shown) <= 1
         assert np.ptp(tone_mapped(light, ToneMapping())[0, 0].astype(int)) > 50

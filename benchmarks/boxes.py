@@ -8,15 +8,16 @@ nothing, and each of the four shared wavelengths of an iteration falls into one 
 """
 
 import argparse
-import time
 from pathlib import Path
 
 import numpy as np
 
 import artist_py
+from artist_py.compare.metrics import relmse
 from artist_py.core.table import Table
-from artist_py.film.accumulation import Film
-from artist_py.samplers.render_job import RenderSettings, Silence, sampler_for
+from artist_py.evidence.reference import block_means
+from artist_py.samplers.render_job import RenderSettings
+from artist_py.samplers.snapshots import snapshots
 from artist_py.scene.spectrum_types import Rgb
 
 from .measure import save
@@ -59,35 +60,17 @@ def _is_used(compiled, name):
     return any(shape.material == name for shape in compiled.graph.shapes)
 
 
-def relative_mse(image, reference):
-    """mean((I - R)^2 / (R^2 + 0.001)) (Sriwasansak et al. 2018)."""
-    return float(np.mean((image - reference) ** 2 / (reference**2 + 0.001)))
-
-
-def halved(image):
-    """Means of 2 x 2 pixels."""
-    height, width, channels = image.shape
-    return image.reshape(height // 2, 2, width // 2, 2, channels).mean(axis=(1, 3))
-
-
 def measure(box, integrator, references, seconds, size):
     """Rows of one method on one box: CPU seconds, iterations, relMSE against the mean of both references."""
     compiled = rgb_scene(SCENES[box], integrator, size)
     reference = 0.5 * (references["vcm"] + references["bpt"]).astype(float)
-    film = Film(size, size)
-    rows, spent = [], 0.0
-    with sampler_for(compiled, film, RenderSettings(threads=1), Silence()) as sampler:
-        sampler.compile_kernels(Silence())
-        for limit in seconds:
-            while spent < limit:
-                begun = time.process_time()
-                sampler.iterate(film.iterations)
-                spent += time.process_time() - begun
-            image = film.mean()
-            error = relative_mse(halved(image) if size == FULL_SIZE else image, reference)
-            rows.append({"cpu_seconds": spent, "iterations": film.iterations, "relmse": error})
-    rate = film.iterations * size * size / spent
-    mean = film.mean().mean(axis=(0, 1)).tolist()
+    rows = []
+    for snapshot in snapshots(compiled, RenderSettings(threads=1), seconds, "cpu"):
+        image, spent = snapshot.film.rgb, snapshot.cpu_seconds
+        error = relmse(block_means(image, 2) if size == FULL_SIZE else image, reference)
+        rows.append({"cpu_seconds": spent, "iterations": snapshot.iterations, "relmse": error})
+    rate = snapshot.iterations * size * size / spent
+    mean = image.mean(axis=(0, 1)).tolist()
     return {"box": box, "integrator": integrator, "pairs_per_cpu_second": rate, "mean": mean, "rows": rows}
 
 
@@ -104,7 +87,7 @@ def main():
     runs, disagreement = [], {}
     for box in options.boxes.split(","):
         references = np.load(options.references / f"box_s{box}.npz")
-        disagreement[box] = relative_mse(references["vcm"].astype(float), references["bpt"].astype(float))
+        disagreement[box] = relmse(references["vcm"], references["bpt"])
         print(f"box {box}: the references' own disagreement is {disagreement[box]:.4f}", flush=True)
         for integrator in options.integrators.split(","):
             result = measure(box, integrator, references, seconds, options.size)

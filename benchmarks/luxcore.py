@@ -14,6 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
+from artist_py.compare.metrics import relmse_of_variance
+
 from .luxcore_scene import luxcore_scene
 from .measure import HERE, SCENES, Renderer, artist_renderer, median_and_spread, on_one_processor, save
 
@@ -84,6 +86,6 @@ def summarise(answers):
     return {
         "samples_per_cpu_second": median_and_spread([a["paths"] / a["cpu_seconds"] for a in answers]),
         "cpu_seconds": statistics.fmean(each["cpu_seconds"] for each in answers),
-        "relmse": float(np.mean(variance / (mean**2 + 0.001))),
+        "relmse": relmse_of_variance(variance, mean),
         "mean_radiance": float(mean.mean()),
     }

@@ -10,6 +10,7 @@ import sys
 import time
 
 import artist_py
+from artist_py.evidence.entries import with_seed
 
 
 def main():
@@ -23,7 +24,7 @@ def main():
 
 def answer(scene, iterations, seed=1, threads=1):
     """Render, and say how long it took."""
-    scene.graph = with_seed(scene.graph, seed)
+    scene = with_seed(scene, seed)
     wall, cpu = time.perf_counter(), time.process_time()
     result = artist_py.render(scene, iterations=iterations, threads=threads)
     cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
@@ -35,28 +36,19 @@ def timed(scene, cpu_seconds, seed, image):
     """Render on one thread for so many CPU seconds; the image in the unit of the scene's radiance."""
     import numpy as np
 
-    from artist_py.film.accumulation import Film
-    from artist_py.samplers.render_job import RenderSettings, Silence, sampler_for
+    from artist_py.samplers.render_job import RenderSettings
+    from artist_py.samplers.snapshots import snapshots
 
-    scene.graph = with_seed(scene.graph, seed)
-    film = Film(*scene.graph.film.resolution)
-    with sampler_for(scene, film, RenderSettings(threads=1), Silence()) as sampler:
-        sampler.compile_kernels(Silence())
-        wall, cpu = time.perf_counter(), time.process_time()
-        while time.process_time() - cpu < cpu_seconds:
-            sampler.iterate(film.iterations)
-        cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
-    radiance = film.mean()[..., 1] / scene.spectra[1].sum(dtype=float)
+    (result,) = snapshots(with_seed(scene, seed), RenderSettings(threads=1), [cpu_seconds], "cpu")
+    radiance = result.film.rgb[..., 1] / scene.spectra[1].sum(dtype=float)
     np.save(image, radiance)
-    paths = film.iterations * film.width * film.height
-    return {"paths": paths, "cpu_seconds": cpu, "seconds": wall, "mean": float(radiance.mean())}
-
-
-def with_seed(graph, seed):
-    """The graph with another seed."""
-    from dataclasses import replace
-
-    return replace(graph, render=replace(graph.render, seed=seed))
+    paths, seconds = result.iterations * radiance.size, result.wall_seconds
+    return {
+        "paths": paths,
+        "cpu_seconds": result.cpu_seconds,
+        "seconds": seconds,
+        "mean": float(radiance.mean()),
+    }
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ time, as long as the error falls like 1 / n.
 import numpy as np
 
 import artist_py
-from artist_py.film.accumulation import ERROR_OFFSET
+from artist_py.compare.metrics import relmse
 from artist_py.samplers import stochastic
 
 from .measure import SCENES, on_one_processor, save
@@ -47,7 +47,7 @@ def errors(path, reference, options, overrides, pairs=stochastic.STRATIFIED_PAIR
     result = {}
     for iterations in COUNTS:
         renders = [render(path, iterations, seed, overrides, pairs) for seed in range(1, options.repeats + 1)]
-        error = float(np.mean([relative_mse(image, reference) for image, _ in renders]))
+        error = float(np.mean([relmse(image, reference) for image, _ in renders]))
         seconds = float(np.median([seconds for _, seconds in renders]))
         result[str(iterations)] = {
             "relmse": error,
@@ -67,11 +67,6 @@ def render(path, iterations, seed, overrides, pairs=stochastic.STRATIFIED_PAIRS)
     finally:
         stochastic.STRATIFIED_PAIRS = usual
     return result.film.rgb, result.statistics["cpu_seconds"]
-
-
-def relative_mse(image, reference):
-    """mean((I - R)^2 / (R^2 + 0.001)) over linear RGB (Sriwasansak et al. 2018)."""
-    return np.mean((image - reference) ** 2 / (reference**2 + ERROR_OFFSET))
 
 
 def show(what, figures):

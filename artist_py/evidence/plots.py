@@ -11,6 +11,7 @@ from artist_py.film.replacing import replacing
 
 # Okabe and Ito 2008: told apart by most people who do not see all colours, and in grey by their markers.
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+WIDTH = 9.5  # of the figure, inches
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">")
 LINES = ("-", "--", ":")
 INK, PAPER = "#1b1d21", "#ffffff"
@@ -69,17 +70,22 @@ def _save(convergence, target, kind, **options):
 def draw(convergence):
     """The matplotlib figure: relMSE and sMAPE side by side, one legend below."""
     figure_class = load_optional("matplotlib.figure", "plots").Figure
-    entries = convergence.entries
-    rows_of_legend = -(-len(entries) // 3)
-    figure = figure_class(figsize=(9.5, 4.3 + 0.25 * rows_of_legend), layout="constrained")
+    fits = slopes(convergence)
+    columns = _legend_columns([_label(entry, fits) for entry in convergence.entries])
+    rows_of_legend = -(-len(convergence.entries) // columns)
+    figure = figure_class(figsize=(WIDTH, 4.3 + 0.25 * rows_of_legend), layout="constrained")
     panels = figure.subplots(1, 2)
     for panel, metric in zip(panels, METRICS, strict=True):
         _panel(panel, convergence, metric)
     handles, labels = panels[0].get_legend_handles_labels()
-    figure.legend(
-        handles, labels, loc="outside lower center", ncols=min(3, len(labels)), frameon=False, fontsize=9
-    )
+    figure.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False, fontsize=9)
     return figure
+
+
+def _legend_columns(labels):
+    """As many columns, up to three, as there is room for: a handle and gaps, and a character of 9 points on average."""
+    longest = max(len(label) for label in labels)
+    return max(1, min(3, len(labels), int(WIDTH / (0.6 + 0.07 * longest))))
 
 
 def _panel(panel, convergence, metric):

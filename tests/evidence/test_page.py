@@ -96,6 +96,19 @@ class TestPlots:
             assert [list(line.get_xdata()) for line in hollow] == [[4.0]]
             assert any(text.get_text() == "error of the reference" for text in panel.texts)
 
+    @pytest.mark.parametrize("length", [0, 30, 55])
+    def test_legend_is_within_the_figure(self, length):
+        """However long the settings are that entries are named by."""
+        run = made_up()
+        names = {entry.label: entry.label + ":setting=" + length * "8" for entry in run.entries}
+        run.entries = [Entry(names[entry.label], "pt", ()) for entry in run.entries]
+        run.rows = [row._replace(entry=names[row.entry]) for row in run.rows]
+        figure = plots.draw(run)
+        figure.draw_without_rendering()
+        [legend] = figure.legends
+        shown, whole = legend.get_window_extent(), figure.bbox
+        assert whole.x0 <= shown.x0 and shown.x1 <= whole.x1 and shown.y0 >= whole.y0
+
     def test_one_render_of_one_entry(self, tmp_path):
         """Nothing to spread, and an axis of iterations."""
         run = made_up(NAMES[:1], repeats=1)

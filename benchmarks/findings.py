@@ -15,7 +15,7 @@ FOLDER = HERE / "findings"
 KEPT = ("convergence.csv", "convergence.json", "plot.svg")
 KEPT_OF_ABLATIONS = ("ablation.csv", "ablation.json")
 INTEGRATORS = ("pt", "lt", "bpt", "ppm", "bpm", "vcm")
-ABLATED = ("pt", "bpt", "vcm")
+ABLATED = ("pt", "bpt")
 QUICK_TIMES, QUICK_REFERENCE_SECONDS = "0.5,1", 5
 
 
@@ -28,6 +28,7 @@ class Run(NamedTuple):
     size: str = "160x160"
     times: str = "1,2,4,8"  # CPU seconds
     reference_seconds: int = 60
+    repeats: int = 2
     settings: tuple = ()  # for all entries, KEY=VALUE
 
 
@@ -42,9 +43,9 @@ def modes(*pairs):
 
 # Methods that merge cannot have independent wavelengths, and pt has no light paths to rotate towards.
 MODES = modes(("pt", "independent"), ("pt", "shared"), ("vcm", "shared"), ("vcm", "rotate"))
-WAVELENGTHS = {"entries": MODES, "times": "1,2,4", "reference_seconds": 40}
+WAVELENGTHS = {"entries": MODES, "times": "1,2,4", "reference_seconds": 30}
 # Whatever fluoresces has shared wavelengths in every method.
-FLUORESCENCE = {"entries": ("pt", "lt", "bpt", "ppm", "vcm"), "size": "96x96", "reference_seconds": 40}
+FLUORESCENCE = {"entries": ("pt", "lt", "bpt", "ppm", "vcm"), "size": "96x96", "reference_seconds": 30}
 CONVERGENCE = {
     "cornell_box": Run("cornell_box"),
     "box_glossy": Run("box_glossy"),
@@ -52,9 +53,9 @@ CONVERGENCE = {
     "cone_caustic": Run("cone_caustic", reference="vcm"),
     "small_light": Run("small_light", reference="vcm"),
     "sds_pool": Run("sds_pool", reference="vcm"),
-    "wavelengths_cornell_box": Run("cornell_box", size="96x96", **WAVELENGTHS),
+    "wavelengths_cornell_box": Run("cornell_box", size="96x96", repeats=1, **WAVELENGTHS),
     "wavelengths_lights": Run("lights", reference="pt", size="192x45", **WAVELENGTHS),
-    "wavelengths_glass_sphere": Run("glass_sphere", reference="vcm", size="96x96", **WAVELENGTHS),
+    "wavelengths_glass_sphere": Run("glass_sphere", reference="vcm", size="96x96", repeats=1, **WAVELENGTHS),
     "fluorescent_spheres": Run("fluorescent_spheres", **FLUORESCENCE),
     "fluorescent_room": Run("fluorescent_room", **FLUORESCENCE),
     "cascade": Run("cascade", **FLUORESCENCE),
@@ -68,8 +69,7 @@ CONVERGENCE = {
     ),
 }
 ABLATIONS = {
-    "ablation_cornell_box": Run("cornell_box", ABLATED, times="8"),
-    "ablation_glass_sphere": Run("glass_sphere", ABLATED, times="8"),
+    "ablation_cornell_box": Run("cornell_box", ABLATED, size="64x64", times="4"),
 }
 
 
@@ -78,7 +78,14 @@ def run(options):
     for name, each in CONVERGENCE.items():
         if fnmatch(name, options.only):
             seconds = QUICK_REFERENCE_SECONDS if options.quick else each.reference_seconds
-            reference = ("--repeat", "2", "--axis", "cpu", "--reference-integrator", each.reference)
+            reference = (
+                "--repeat",
+                str(each.repeats),
+                "--axis",
+                "cpu",
+                "--reference-integrator",
+                each.reference,
+            )
             measure(name, each, options.quick, (*reference, "--make-reference", f"{seconds}s"), KEPT)
     for name, each in ABLATIONS.items():
         if fnmatch(name, options.only):

@@ -264,6 +264,31 @@ def findings():
     return "\n".join(parts)
 
 
+def ablations():
+    """What features cost that a scene does not need, a table per scene."""
+    parts = []
+    for path in sorted((HERE / "findings").glob("*/ablation.json")):
+        rows = [
+            (
+                cost["entry"],
+                cost["feature"],
+                f"{1e3 * cost['cpu_without']:.1f} / {1e3 * cost['cpu_with']:.1f}",
+                f"{cost['ratio']:.2f} ({cost['ratio_low']:.2f} to {cost['ratio_high']:.2f})",
+                f"{cost['compile_without']:.1f} / {cost['compile_with']:.1f}",
+            )
+            for cost in json.loads(path.read_text(encoding="utf-8"))["costs"]
+        ]
+        header = (
+            "",
+            "forced in",
+            "CPU ms per iteration, without / with",
+            "ratio",
+            "compile s, without / with",
+        )
+        parts.append("\n".join([f"\n### {path.parent.name}", "", *markdown(header, rows), ""]))
+    return "\n".join(parts)
+
+
 def slope_text(slope):
     """The fitted exponent of the seconds, where there is one."""
     return f"{slope['median']:.2f}" if slope else ""
@@ -281,4 +306,5 @@ WRITERS = (
     samplers,
     correlation,
     findings,
+    ablations,
 )

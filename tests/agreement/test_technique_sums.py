@@ -31,6 +31,7 @@ METHODS = {
     "bpm": {"wavelengths": "shared", "merging": {"radius": 0.04}},
     "vcm": {"wavelengths": "shared", "merging": {"radius": 0.04}},
 }
+FAST = {"pt", "vcm"}  # which have all techniques
 KINDS = {
     "pt": {"hit", "nee"},
     "lt": {"hit", "lt", "lens"},
@@ -39,11 +40,17 @@ KINDS = {
     "bpm": {"hit", "vm"},
     "vcm": {"hit", "nee", "vc", "lt", "lens", "vm"},
 }
+# One of each kind, all of them off: so that tests with and without share kernels.
+UNLIT = [
+    {"type": "environment", "spectrum": 0},
+    {"type": "directional", "direction": [0.3, 1, -0.5], "spectrum": 0, "angle": 5.0},
+    {"type": "point", "position": [-0.5, -0.2, 0.3], "spectrum": 0},
+]
 FILMS = {
-    "all of it": {"resolution": [20, 16], "filter": "box"},
+    "all of it": {"resolution": [20, 16], "filter": "mitchell"},
     "cropped at two borders": {"resolution": [20, 16], "crop": [7, 20, 0, 9], "filter": "mitchell"},
     "large": {"resolution": [64, 48], "crop": [22, 64, 0, 30], "filter": "mitchell"},
-    "cropped inside": {"resolution": [20, 16], "crop": [3, 15, 4, 13], "filter": "blackman-harris"},
+    "cropped inside": {"resolution": [20, 16], "crop": [3, 15, 4, 13], "filter": "mitchell"},
 }
 
 
@@ -69,6 +76,7 @@ def room(integrator, film=FILMS["all of it"], sphere=INSIDE, **more):
         materials=MATERIALS,
         camera=CAMERA,
         film=film,
+        emitters=UNLIT,
         render={**settings, **METHODS[integrator], **more},
     )
 
@@ -83,7 +91,9 @@ def assert_adds_up(weighted, rgb):
 class TestSums:
     """With weights."""
 
-    @pytest.mark.parametrize("integrator", METHODS)
+    @pytest.mark.parametrize(
+        "integrator", [pytest.param(name, marks=() if name in FAST else pytest.mark.slow) for name in METHODS]
+    )
     def test_they_are_the_image(self, integrator):
         result = render(room(integrator), 3, techniques=True)
         images = result.techniques
@@ -127,7 +137,7 @@ class TestSums:
         assert np.array_equal(one.weighted, two.weighted)
         assert np.array_equal(one.unweighted, two.unweighted)
 
-    @pytest.mark.parametrize("integrator", ["pt", "vcm"])
+    @pytest.mark.parametrize("integrator", ["pt", pytest.param("vcm", marks=pytest.mark.slow)])
     def test_the_image_is_the_same_without(self, integrator):
         with_them, without = (render(room(integrator), 2, techniques=wanted) for wanted in (True, False))
         assert without.techniques is None
@@ -177,6 +187,7 @@ def room_tables(integrator, film, **more):
         },
         "materials": MATERIALS,
         "shapes": room_shapes(INSIDE),
+        "emitters": UNLIT,
         **more,
     }  # fmt: skip
 

@@ -9,12 +9,17 @@ from rendering import assert_uniform, diffuse, look, radiance, scene, shape
 BOX = shape("box", "wall", min=[-1, -1.5, -0.7], max=[1, 1, 1.3], reverse=True, emission=1)
 SPHERE = shape("sphere", "wall", center=[0.2, 0, 0.1], radius=1.3, reverse=True, emission=1)
 ROOMS = {"box": BOX, "sphere": SPHERE}
+# A lamp of each kind that is off, outside: so both rooms share their kernels.
+UNSEEN = [
+    shape("rectangle", corner=[2, 0, 0], edges=[[0.1, 0, 0], [0, 0.1, 0]], emission={"spectrum": 0}),
+    shape("sphere", center=[2, 0.5, 0], radius=0.1, emission={"spectrum": 0}),
+]
 NO_ROULETTE = 1_000_000
 
 
 def room(walls, albedo, size=16, **render):
     return scene(
-        [walls],
+        [walls, *UNSEEN],
         materials={"wall": diffuse(albedo)},
         camera=look([0, -0.5, 0], [0.3, 1, 0.2], 90),
         film={"resolution": [size, size]},

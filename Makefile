@@ -10,7 +10,7 @@ demo: setup
 	$(RUN)/artist render scenes/glass_sphere.toml -o out/demo.exr -o out/demo.png
 
 test: setup
-	$(RUN)/python -m pytest -m "not slow" -n auto --dist loadfile
+	$(RUN)/python -m pytest -m "not slow" -n auto --dist loadfile --no-loadscope-reorder
 
 setup: .venv/installed
 

@@ -18,12 +18,15 @@ THROUGH_GLASS = "finds what is seen through glass by rare hits of the lamp"
 HIDDEN_LAMP = "hits the lamp in the hood too rarely for the variance to be known"
 
 NONE = MappingProxyType({})
+ALL = frozenset({"pt", "lt", "ppm", "bpm", "vcm"})
+MERGING_ALONE = frozenset({"ppm", "bpm"})  # vcm merges as they do, and they need the most light paths
 
 
 class Case(NamedTuple):
     """A scene file, overrides on top of it, and where tiny things are put.
 
     `left_out` and `on_the_whole` map integrators to the reasons why they are not compared, or only by the whole image.
+    `slow` are the integrators that `make slow` compares: all, where other cases have the same materials and lamps.
     """
 
     file: Path
@@ -31,37 +34,44 @@ class Case(NamedTuple):
     place: tuple = (0.0, 0.0, 0.0)
     left_out: dict = NONE
     on_the_whole: dict = NONE
+    slow: frozenset = frozenset()
 
 
 CASES = {
-    "diffuse boxes, measured spectra": Case(SCENES / "cornell_box.toml"),
+    "diffuse boxes, measured spectra": Case(SCENES / "cornell_box.toml", slow=ALL),
     "mirror, glass, plastic": Case(
-        SCENES / "cornell_smooth.toml", on_the_whole={"pt": CAUSTICS, "lt": THROUGH_GLASS}
+        SCENES / "cornell_smooth.toml", on_the_whole={"pt": CAUSTICS, "lt": THROUGH_GLASS}, slow=ALL
     ),
     "grooved metal, rough walls": Case(
-        SCENES / "cornell_grooved.toml", on_the_whole={"pt": CAUSTICS, "lt": THROUGH_GLASS}
+        SCENES / "cornell_grooved.toml",
+        on_the_whole={"pt": CAUSTICS, "lt": THROUGH_GLASS},
+        slow=MERGING_ALONE,
     ),
-    "caustic of a cone": Case(SCENES / "cone_caustic.toml", {"shapes.lamp.radius": 0.2}),
+    "caustic of a cone": Case(SCENES / "cone_caustic.toml", {"shapes.lamp.radius": 0.2}, slow=ALL),
     "dispersion": Case(
         SCENES / "glass_sphere.toml", {"shapes.lamp.radius": 0.25}, on_the_whole={"pt": CAUSTICS}
     ),
-    "one-sided walls": Case(SCENES / "box_spheres.toml", on_the_whole={"pt": CAUSTICS, "lt": THROUGH_GLASS}),
+    "one-sided walls": Case(
+        SCENES / "box_spheres.toml", on_the_whole={"pt": CAUSTICS, "lt": THROUGH_GLASS}, slow=ALL
+    ),
     "Phong's lobe": Case(
         SCENES / "box_glossy.toml",
         on_the_whole={"pt": CAUSTICS, "lt": THROUGH_GLASS, "ppm": "few photons light a narrow lobe"},
+        slow=MERGING_ALONE,
     ),
     "textures": Case(SCENES / "textures.toml", place=(0, 0, 1)),
     "sun and sky": Case(
         SCENES / "sun_sky.toml", {"emitters.sun.angle": 20, "shapes.ground.radius": 6}, (0, 0, 1)
     ),
     "spots and a point, direct light": Case(
-        SCENES / "spotlights.toml", {"render.max_path_length": 2}, (0, 0, 2)
+        SCENES / "spotlights.toml", {"render.max_path_length": 2}, (0, 0, 2), slow=MERGING_ALONE
     ),
     "spots and a point, one reflection": Case(
         SCENES / "spotlights.toml",
         {"render.max_path_length": 3},
         (0, 0, 2),
         {"pt": NO_DELTA_CAUSTICS, "lt": NO_MIRRORED_VIEW},
+        slow=MERGING_ALONE,
     ),
     "plastic in glass": Case(
         SCENES / "ball_in_ball.toml",
@@ -74,14 +84,18 @@ CASES = {
         {"shapes.lamp.radius": 0.15, "camera.look_at": [0, 0, 0]},
         (0, 0, 2),
         {"pt": HIDDEN_LAMP},
+        slow=ALL,
     ),
-    "pool": Case(SCENES / "sds_pool.toml", {"emitters.sun.angle": 30}, (0, 0, 2)),
+    "pool": Case(SCENES / "sds_pool.toml", {"emitters.sun.angle": 30}, (0, 0, 2), slow=ALL),
     "lamps that hide": Case(
         SCENES / "veach_room.toml",
         {},
         (0, 0, 2),
         on_the_whole={"pt": CAUSTICS, "lt": THROUGH_GLASS},
+        slow=ALL,
     ),
-    "pane, nothing, emitting mesh": Case(OWN / "pane_and_mesh_lamp.toml", {}, (0, 0, 0.3)),
-    "parallel light": Case(OWN / "parallel_light.toml", {}, (0, 0, 0.3)),
+    "pane, nothing, emitting mesh": Case(
+        OWN / "pane_and_mesh_lamp.toml", {}, (0, 0, 0.3), slow=MERGING_ALONE
+    ),
+    "parallel light": Case(OWN / "parallel_light.toml", {}, (0, 0, 0.3), slow=MERGING_ALONE),
 }

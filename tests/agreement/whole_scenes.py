@@ -16,6 +16,7 @@ import math
 from pathlib import Path
 
 import numpy as np
+import pytest
 from rendering import shape
 from scipy import stats
 from whole_scene_cases import CASES, SCENES
@@ -189,5 +190,9 @@ def assert_agrees(renders, name, integrator):
 
 
 def names_for(integrator):
-    """The cases that an integrator is compared in."""
-    return [name for name, case in CASES.items() if integrator not in case.left_out]
+    """Parameters: the cases that an integrator is compared in."""
+    return [
+        pytest.param(name, marks=pytest.mark.slow if integrator in case.slow else ())
+        for name, case in CASES.items()
+        if integrator not in case.left_out
+    ]

@@ -1,4 +1,4 @@
-"""Path tracing, light tracing and photon mapping against bidirectional path tracing, on whole scenes."""
+"""Every integrator against bidirectional path tracing, on whole scenes."""
 
 import pytest
 from whole_scenes import Renders, allowed_t, assert_agrees, names_for, smallest_t, unbiased
@@ -22,6 +22,16 @@ def test_light_tracing(renders, name):
 @pytest.mark.parametrize("name", names_for("ppm"))
 def test_progressive_photon_mapping(renders, name):
     assert_agrees(renders, name, "ppm")
+
+
+@pytest.mark.parametrize("name", names_for("bpm"))
+def test_bidirectional_photon_mapping(renders, name):
+    assert_agrees(renders, name, "bpm")
+
+
+@pytest.mark.parametrize("name", names_for("vcm"))
+def test_vertex_connection_and_merging(renders, name):
+    assert_agrees(renders, name, "vcm")
 
 
 def test_what_is_left_out_would_be_found(renders):

@@ -13,6 +13,8 @@ from scipy import stats
 import artist_py
 
 SIZE, BLOCK, ITERATIONS = 24, 6, 256
+# Whole scenes compare all methods on all materials: these are pairs with cameras, filters and wavelengths of their own.
+FAST = {("diffuse", "ppm"), ("diffuse", "bpm"), ("specular", "bpt"), ("smooth", "lt"), ("smooth", "vcm")}
 PRECISION = 0.01  # standard error of the image's mean that each image has to reach, relative
 METHODS = ("lt", "bpt", "ppm", "bpm", "vcm")
 FALSE_ALARM = 1e-3
@@ -102,8 +104,13 @@ def path_traced():
     return get
 
 
-@pytest.mark.parametrize("integrator", METHODS)
-@pytest.mark.parametrize("name", SCENES)
+def pairs():
+    """Every scene by every method."""
+    pairs = [(name, integrator) for name in SCENES for integrator in METHODS]
+    return [pytest.param(*pair, marks=() if pair in FAST else pytest.mark.slow) for pair in pairs]
+
+
+@pytest.mark.parametrize(("name", "integrator"), pairs())
 def test_agrees_with_path_tracing(name, integrator, path_traced):
     assert_agree(
         path_traced(name), image(name, integrator), PRECISION * (2 if integrator in ("ppm", "bpm") else 1)

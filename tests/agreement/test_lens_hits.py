@@ -57,7 +57,7 @@ def expected_mean():
     return REFLECTANCE * INTENSITY * integral / (BEHIND**2 * math.pi * RADIUS**2 * film_area)
 
 
-@pytest.mark.parametrize("integrator", ["lt", "bpt"])
+@pytest.mark.parametrize("integrator", ["lt", pytest.param("bpt", marks=pytest.mark.slow)])
 def test_a_point_in_a_mirror(integrator):
     image = radiance(seen_in_mirror(integrator), 400)
     assert_mean(image, expected_mean(), 0.03)

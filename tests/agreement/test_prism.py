@@ -129,7 +129,7 @@ def test_one_laser(nm):
     assert stats.chi2.sf((z**2).sum(), z.size) > FALSE_ALARM
 
 
-@pytest.mark.parametrize("wavelengths", ["independent", "shared"])
+@pytest.mark.parametrize("wavelengths", ["independent", pytest.param("shared", marks=pytest.mark.slow)])
 def test_three_lasers_at_once(wavelengths):
     """All in one image: each band shows its slit where it belongs, nothing elsewhere; noise is that between seeds."""
     emission = {"lines": [[nm + 0.5, 1] for nm in LASERS], "width": 1}

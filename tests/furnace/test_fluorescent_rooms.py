@@ -30,6 +30,7 @@ ROUNDING = 2e-5  # relative; long paths carry float32
 ITERATIONS = 48
 # Standard errors that the images must have, relative: light subpaths alone are noisier here.
 PRECISION = {"pt": 1e-3, "bpt": 2e-3, "vcm": 8e-3, "lt": 2e-2, "bpm": 2e-2, "ppm": 2e-2}
+FAST = {"pt", "bpt", "vcm"}  # their techniques are all that there are
 
 
 def assert_deviations_vanish(found, expected, precision):
@@ -53,7 +54,10 @@ def assert_iterations_agree(compiled, seen, precision=None, iterations=ITERATION
 
 
 @pytest.mark.parametrize("seen", [INNER, OUTER])
-@pytest.mark.parametrize("integrator", list(PRECISION))
+@pytest.mark.parametrize(
+    "integrator",
+    [pytest.param(name, marks=() if name in FAST else pytest.mark.slow) for name in PRECISION],
+)
 def test_iterations_have_the_expectation_of_their_wavelengths(integrator, seen):
     assert_iterations_agree(room(seen, integrator=integrator), seen)
 
@@ -123,7 +127,9 @@ def glass_room(**render):
     )
 
 
-@pytest.mark.parametrize(("integrator", "precision"), [("pt", 8e-3), ("vcm", 1.5e-2)])
+@pytest.mark.parametrize(
+    ("integrator", "precision"), [("pt", 8e-3), pytest.param("vcm", 1.5e-2, marks=pytest.mark.slow)]
+)
 def test_dispersion_with_fluorescence(integrator, precision):
     """A dispersive surface keeps one wavelength of all sets, and the next dye makes all of them of it (theory 3.7)."""
     compiled = glass_room(integrator=integrator)

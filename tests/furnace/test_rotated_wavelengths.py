@@ -47,7 +47,7 @@ def exact(compiled, reflectance):
 
 
 @pytest.mark.parametrize("reflectance", REFLECTANCES)
-@pytest.mark.parametrize("integrator", ["bpm", "vcm"])
+@pytest.mark.parametrize("integrator", [pytest.param("bpm", marks=pytest.mark.slow), "vcm"])
 def test_closed_sphere(reflectance, integrator):
     compiled = room(REFLECTANCES[reflectance], integrator)
     # Pixels share photons, and are not independent; renders of other seeds are.

@@ -42,6 +42,7 @@ SUBSETS = {
 SLOW = {
     "bpt, power heuristic",
     "bpt, few light paths",
+    "bpt, many light paths",
     "ppm, Epanechnikov",
     "bpm, SmallVCM's schedule",
     "vcm, power heuristic",
@@ -87,8 +88,8 @@ def assert_agree(found, truth, rounding):
     assert abs(whole.mean() - 1) <= stats.t.isf(0.5 * FALSE_ALARM, len(whole) - 1) * error + rounding
 
 
-def cases(names):
-    return [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ()) for name in names]
+def cases(names, slow=frozenset(SLOW)):
+    return [pytest.param(name, marks=pytest.mark.slow if name in slow else ()) for name in names]
 
 
 @pytest.mark.parametrize("name", cases(SUBSETS))
@@ -98,7 +99,7 @@ def test_point_in_a_glowing_sphere(name):
     assert_agree(estimates(compiled), expected(lamps=False), 1e-5 + lost(settings))
 
 
-@pytest.mark.parametrize("name", ["pt", "lt", "bpt", "ppm", "bpm", "vcm"])
+@pytest.mark.parametrize("name", cases(["pt", "lt", "bpt", "ppm", "bpm", "vcm"], {"pt", "lt", "ppm", "bpm"}))
 def test_lamps_of_two_colors(name):
     """Black disks at the poles. Within a merge radius of their rims, photons are missing: a part of WIDE["radius"]."""
     integrator, settings = SUBSETS[name]
@@ -113,7 +114,7 @@ def rim(settings):
 
 
 @pytest.mark.parametrize("edges", [pytest.param(2, marks=pytest.mark.slow), 4])
-@pytest.mark.parametrize("name", ["pt", "lt", "bpt", "ppm", "bpm", "vcm"])
+@pytest.mark.parametrize("name", cases(["pt", "lt", "bpt", "ppm", "bpm", "vcm"], {"lt", "ppm", "bpm"}))
 def test_limited_length(name, edges):
     integrator, settings = SUBSETS[name]
     compiled = sphere(lamps=False, integrator=integrator, max_path_length=edges, **settings)

@@ -188,7 +188,7 @@ def oren_nayar_albedo(reflectance, sigma, angle):
     return total
 
 
-@pytest.mark.parametrize("wavelengths", ["independent", "shared"])
+@pytest.mark.parametrize("wavelengths", ["independent", pytest.param("shared", marks=pytest.mark.slow)])
 def test_white_light_through_dispersive_glass(wavelengths):
     """All wavelengths at once: whatever each of them does, what comes out is white in all three channels.
 

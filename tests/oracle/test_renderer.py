@@ -53,7 +53,9 @@ def quarters(compiled, iterations):
     return np.array(found)
 
 
-@pytest.mark.parametrize(("mode", "other"), [("vcm", "vcm"), ("bdpt", "bpt"), ("bdpm", "bpm")])
+@pytest.mark.parametrize(
+    ("mode", "other"), [("vcm", "vcm"), ("bdpt", "bpt"), pytest.param("bdpm", "bpm", marks=pytest.mark.slow)]
+)
 def test_same_image_as_the_kernels(mode, other):
     """Merges have the same radius and so the same bias."""
     found = quarters(cornell("reference", **{"render.reference.mode": mode}), 20)

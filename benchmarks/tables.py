@@ -283,7 +283,7 @@ def ablations():
             "forced in",
             "CPU ms per iteration, without / with",
             "ratio",
-            "compile s, without / with",
+            "compile CPU s, without / with",
         )
         parts.append("\n".join([f"\n### {path.parent.name}", "", *markdown(header, rows), ""]))
     return "\n".join(parts)

@@ -8,6 +8,7 @@ tracing. Renders with and without take turns of a fraction of a second, so that 
 import dataclasses
 import json
 import os
+import resource
 import subprocess
 import sys
 import tempfile
@@ -43,7 +44,7 @@ class Cost(NamedTuple):
     ratio_low: float
     ratio_high: float
     coverage: float  # probability that the true median of the ratio is between these two
-    compile_without: float | None  # seconds from an empty cache; None if not measured
+    compile_without: float | None  # CPU seconds from an empty cache; None if not measured
     compile_with: float | None
     difference: float  # relMSE between the two images of equally many iterations
     noise: float | None  # relMSE that two independent images would have, by their own estimates
@@ -170,7 +171,7 @@ CHILD = "import sys; from artist_py.evidence.ablation import print_compile_secon
 
 
 def _compile_seconds(scene, entry, overrides, feature, which):
-    """Seconds to compile all kernels with an empty cache, in a process of its own."""
+    """CPU seconds to compile all kernels with an empty cache, in a process of its own."""
     task = json.dumps([str(scene), list(entry), [list(each) for each in overrides], feature, which])
     with tempfile.TemporaryDirectory(prefix="artist-compile-") as cache:
         environment = {**os.environ, "ARTIST_CACHE_DIR": cache}
@@ -184,12 +185,19 @@ def _compile_seconds(scene, entry, overrides, feature, which):
 
 
 def print_compile_seconds(task):
-    """Compile what `task` says, and print how long that took; the cache is that of the environment."""
+    """Compile what `task` says, and print the CPU seconds that took; the cache is that of the environment."""
     scene, (label, integrator, settings), overrides, feature, which = json.loads(task)
     entry = Entry(label, integrator, tuple(tuple(each) for each in settings))
     compiled = compile_pair(scene, entry, [tuple(each) for each in overrides], feature, 1)[which]
+    before = _cpu_seconds()
     [look] = snapshots(compiled, RenderSettings(threads=1), [1], "iterations")
-    print(look.compile_seconds)  # noqa: T201 - for the parent
+    print(_cpu_seconds() - before - look.cpu_seconds)  # noqa: T201 - for the parent
+
+
+def _cpu_seconds():
+    """Of this process and of its children, in which kernels of large renders are compiled."""
+    usages = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(usage.ru_utime + usage.ru_stime for usage in usages)
 
 
 # --- words
@@ -197,7 +205,7 @@ def print_compile_seconds(task):
 
 def ablation_table(costs):
     """`(header, lines)` of texts."""
-    header = ["", "forced in", "ms CPU/iteration without", "with", "ratio", "compile s without", "with",
+    header = ["", "forced in", "ms CPU/iteration without", "with", "ratio", "compile CPU s without", "with",
               "images differ by relMSE"]  # fmt: skip
     lines = [
         [

@@ -42,8 +42,10 @@ def modes(*pairs):
 
 
 # Methods that merge cannot have independent wavelengths, and pt has no light paths to rotate towards.
-MODES = modes(("pt", "independent"), ("pt", "shared"), ("vcm", "shared"), ("vcm", "rotate"))
-WAVELENGTHS = {"entries": MODES, "times": "1,2,4", "reference_seconds": 30}
+INDEPENDENT, MERGED = modes(("pt", "independent")), modes(("vcm", "shared"), ("vcm", "rotate"))
+# `samplers` compares independent and shared wavelengths of pt on the other two scenes.
+ALL_MODES = (*INDEPENDENT, *modes(("pt", "shared")), *MERGED)
+WAVELENGTHS = {"times": "1,2,4", "reference_seconds": 30}
 # Whatever fluoresces has shared wavelengths in every method.
 FLUORESCENCE = {"entries": ("pt", "lt", "bpt", "ppm", "vcm"), "size": "96x96", "reference_seconds": 30}
 CONVERGENCE = {
@@ -53,9 +55,13 @@ CONVERGENCE = {
     "cone_caustic": Run("cone_caustic", reference="vcm"),
     "small_light": Run("small_light", reference="vcm"),
     "sds_pool": Run("sds_pool", reference="vcm"),
-    "wavelengths_cornell_box": Run("cornell_box", size="96x96", repeats=1, **WAVELENGTHS),
-    "wavelengths_lights": Run("lights", reference="pt", size="192x45", **WAVELENGTHS),
-    "wavelengths_glass_sphere": Run("glass_sphere", reference="vcm", size="96x96", repeats=1, **WAVELENGTHS),
+    "wavelengths_cornell_box": Run(
+        "cornell_box", (*INDEPENDENT, *MERGED), size="96x96", repeats=1, **WAVELENGTHS
+    ),
+    "wavelengths_lights": Run("lights", ALL_MODES, "pt", "192x45", **WAVELENGTHS),
+    "wavelengths_glass_sphere": Run(
+        "glass_sphere", (*INDEPENDENT, *MERGED), "vcm", "96x96", repeats=1, **WAVELENGTHS
+    ),
     "fluorescent_spheres": Run("fluorescent_spheres", **FLUORESCENCE),
     "fluorescent_room": Run("fluorescent_room", **FLUORESCENCE),
     "cascade": Run("cascade", **FLUORESCENCE),

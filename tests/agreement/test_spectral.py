@@ -35,17 +35,21 @@ WHITE_POINTS = {
 CHROMATICITY_BIAS = 2e-5  # of tables that end at 380 and 780 nm, and of rounding
 
 
+def white_plane(light, white_luminance=WHITE_LUMINANCE):
+    """A plane that reflects everything, under a sky of this light."""
+    plane = shape("rectangle", "white", corner=[-1, 0.5, -1], edges=[[2, 0, 0], [0, 0, 2]])
+    return scene(
+        [sky(light), plane],
+        materials={"white": diffuse(1.0)},
+        film={"white_luminance": white_luminance, "resolution": [32, 32]},
+        render={"wavelength_range": VISIBLE, "max_path_length": 2, "sampler": "sobol"},
+    )
+
+
 @pytest.mark.parametrize("name", WHITE_POINTS)
 def test_white_plane_has_the_white_point(name):
     """X - x (X + Y + Z) and Y - y (X + Y + Z) have mean zero over independent pixels."""
-    plane = shape("rectangle", "white", corner=[-1, 0.5, -1], edges=[[2, 0, 0], [0, 0, 2]])
-    compiled = scene(
-        [sky(name), plane],
-        materials={"white": diffuse(1.0)},
-        film={"white_luminance": WHITE_LUMINANCE, "resolution": [32, 32]},
-        render={"wavelength_range": VISIBLE, "max_path_length": 2, "sampler": "sobol"},
-    )
-    xyz = rgb_to_xyz(render(compiled, 64).film.rgb).reshape(-1, 3)
+    xyz = rgb_to_xyz(render(white_plane(name), 64).film.rgb).reshape(-1, 3)
     total = xyz.sum(axis=1)
     for axis, coordinate in enumerate(WHITE_POINTS[name]):
         excess = (xyz[:, axis] - coordinate * total) / total.mean()
@@ -145,6 +149,16 @@ def still_life(spectrum, hero_count, wavelengths):
     )
 
 
+def other_modes():
+    """All but 4 independent wavelengths; a mode is a kernel, and each number and each way is in one that is fast."""
+    slow = {(1, "shared"), (8, "independent")}
+    return [
+        pytest.param(mode, id=str(mode), marks=pytest.mark.slow if mode in slow else ())
+        for mode in MODES
+        if mode != (4, "independent")
+    ]
+
+
 @pytest.fixture(scope="module")
 def blocks():
     """Means over 4 x 4 blocks of the still life, (seeds, 16, 3), by light and mode."""
@@ -161,7 +175,7 @@ def blocks():
     return blocks_of
 
 
-@pytest.mark.parametrize("mode", [mode for mode in MODES if mode != (4, "independent")], ids=str)
+@pytest.mark.parametrize("mode", other_modes())
 @pytest.mark.parametrize("light", LIGHTS)
 def test_modes_agree(blocks, light, mode):
     """Blocks of the image by Welch's t-test between seeds, and the mean image, against 4 independent wavelengths."""
@@ -202,11 +216,6 @@ def test_bands_are_the_spectrum_and_integrate_to_the_image():
 
 def test_white_luminance_scales_the_image():
     """Twice the luminance that is called white, half the image; exactly, since 2 is a power of two."""
-    images = [
-        render(
-            scene([sky("D65")], film={"white_luminance": white}, render={"wavelength_range": VISIBLE}), 4
-        ).film.rgb
-        for white in (100.0, 200.0)
-    ]
+    images = [render(white_plane("D65", white), 4).film.rgb for white in (100.0, 200.0)]
     assert images[0].max() > 0.5
     assert np.array_equal(images[0], 2 * images[1])

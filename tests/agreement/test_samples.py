@@ -80,8 +80,10 @@ def test_any_numbers(case, path_traced):
 @pytest.mark.parametrize(
     "samples",
     [
-        {"next_event": 2, "connections": 2.5, "light_image": 0.5, "merging": 0.5},
-        pytest.param({"next_event": 0, "connections": 0.3, "light_image": 0}, marks=pytest.mark.slow),
+        pytest.param(
+            {"next_event": 2, "connections": 2.5, "light_image": 0.5, "merging": 0.5}, marks=pytest.mark.slow
+        ),
+        {"next_event": 0, "connections": 0.3, "light_image": 0},
     ],
 )
 def test_reference(samples, path_traced):

@@ -4,28 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from quadric_cases import EPSILON, IDENTITY, all_kinds, off_surface, random_map, record
 
 from artist_py.core.vector import Vec3, vec3
-from artist_py.geometry.quadric_records import quadric_records
 from artist_py.geometry.quadrics import quadric_bounds, quadric_normal, quadric_position, quadric_uv
 from artist_py.scene.tables import CONE, CYLINDER, DISK, SPHERE
-
-KINDS = (SPHERE, DISK, CYLINDER, CONE)
-EPSILON = 2.0**-52
-IDENTITY = np.eye(3, 4)
-all_kinds = pytest.mark.parametrize("kind", KINDS, ids=["sphere", "disk", "cylinder", "cone"])
-
-
-def record(kind, object_to_world):
-    return quadric_records([kind], [object_to_world]).view(np.recarray)[0]
-
-
-def random_map(rng, size=1.0, offset=1.0):
-    """A skewed, sometimes mirrored map with stretches in [1/4, 1] x `size`, and its centre about `offset` away."""
-    left, _ = np.linalg.qr(rng.normal(size=(3, 3)))
-    right, _ = np.linalg.qr(rng.normal(size=(3, 3)))
-    stretches = size * rng.uniform(0.25, 1.0, 3) * rng.choice([-1.0, 1.0], 3)
-    return np.column_stack([left @ np.diag(stretches) @ right, offset * rng.normal(size=3)])
 
 
 def surface_points(rng, kind, n):
@@ -34,17 +17,6 @@ def surface_points(rng, kind, n):
     radius = {SPHERE: np.sqrt(1.0 - (2.0 * s - 1.0) ** 2), DISK: s, CYLINDER: np.ones(n), CONE: 1.0 - s}[kind]
     z = {SPHERE: 2.0 * s - 1.0, DISK: np.zeros(n)}.get(kind, s)
     return np.stack([radius * np.cos(angle), radius * np.sin(angle), z], 1)
-
-
-def off_surface(kind, p):
-    """How far the canonical point p is from the canonical shape, edges included."""
-    radius = math.hypot(p[0], p[1])
-    if kind == SPHERE:
-        return abs(math.hypot(radius, p[2]) - 1.0)
-    if kind == DISK:
-        return abs(p[2]) + max(radius - 1.0, 0.0)
-    beyond = max(-p[2], 0.0) + max(p[2] - 1.0, 0.0)
-    return abs(radius - (1.0 if kind == CYLINDER else 1.0 - p[2])) + beyond
 
 
 @all_kinds

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from quadric_cases import random_maps, random_rays
 
 from artist_py.core.vector import vec3
 from artist_py.geometry.embree import INVALID_ID, Device, EmbreeScene, closest_hit, is_occluded
@@ -24,20 +25,6 @@ def device():
 @pytest.fixture(scope="module")
 def addresses():
     return quadric_callbacks()
-
-
-def random_maps(rng, n, size, spread):
-    """Skewed maps of about `size`, centred within `spread` of the origin."""
-    rotations, _ = np.linalg.qr(rng.normal(size=(n, 3, 3)))
-    shears = np.eye(3) + np.triu(rng.uniform(-0.5, 0.5, (n, 3, 3)), 1)
-    linear = rotations @ shears * (size * rng.uniform(0.3, 1.0, (n, 1, 3)))
-    return np.concatenate([linear, rng.uniform(-spread, spread, (n, 3, 1))], axis=2)
-
-
-def random_rays(rng, n):
-    """Origins and directions that are exact in float32."""
-    origins = rng.uniform(-1.5, 1.5, (n, 3)).astype(np.float32).astype(float)
-    return origins, (rng.normal(size=(n, 3)) * 0.7 - origins).astype(np.float32).astype(float)
 
 
 def scene_of(device, addresses, quadrics, geometry_id=0):

@@ -6,29 +6,12 @@ from decimal import Decimal, localcontext
 import numba
 import numpy as np
 import pytest
+from quadric_cases import EPSILON, IDENTITY, all_kinds, random_map, record
 
 from artist_py.core.vector import Vec3, vec3
-from artist_py.geometry.quadric_records import quadric_records
 from artist_py.geometry.quadrics import intersect_quadric
 from artist_py.jit import kernel
 from artist_py.scene.tables import CONE, CYLINDER, DISK, SPHERE
-
-KINDS = (SPHERE, DISK, CYLINDER, CONE)
-EPSILON = 2.0**-52
-IDENTITY = np.eye(3, 4)
-all_kinds = pytest.mark.parametrize("kind", KINDS, ids=["sphere", "disk", "cylinder", "cone"])
-
-
-def record(kind, object_to_world):
-    return quadric_records([kind], [object_to_world]).view(np.recarray)[0]
-
-
-def random_map(rng, size=1.0, offset=1.0):
-    """A skewed, sometimes mirrored map with stretches in [1/4, 1] x `size`, and its centre about `offset` away."""
-    left, _ = np.linalg.qr(rng.normal(size=(3, 3)))
-    right, _ = np.linalg.qr(rng.normal(size=(3, 3)))
-    stretches = size * rng.uniform(0.25, 1.0, 3) * rng.choice([-1.0, 1.0], 3)
-    return np.column_stack([left @ np.diag(stretches) @ right, offset * rng.normal(size=3)])
 
 
 def exact(array):

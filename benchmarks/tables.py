@@ -274,7 +274,7 @@ def ablations():
                 cost["feature"],
                 f"{1e3 * cost['cpu_without']:.1f} / {1e3 * cost['cpu_with']:.1f}",
                 f"{cost['ratio']:.2f} ({cost['ratio_low']:.2f} to {cost['ratio_high']:.2f})",
-                f"{cost['compile_without']:.1f} / {cost['compile_with']:.1f}",
+                f"{cost['compile_without']:.1f} / {cost['compile_with']:.1f}" if cost["compile_with"] else "",
             )
             for cost in json.loads(path.read_text(encoding="utf-8"))["costs"]
         ]

@@ -117,6 +117,7 @@ def test_agrees_with_path_tracing(name, integrator, path_traced):
     )
 
 
+@pytest.mark.slow
 def test_rotated_wavelengths_agree(path_traced):
     """Over 10 nm to either side the spectra of gold and of flint glass are straight lines, to 1e-3."""
     merging = {"radius": 0.002, "wavelength_tolerance": 10}

@@ -259,8 +259,17 @@ def room(lit, emitters, integrator):
     return lit(emitters, ROOM, VIEW, 0.6, panel, **settings)
 
 
-@pytest.mark.parametrize("name", [*LIGHTS, "image", "all"])
-@pytest.mark.parametrize("integrator", ["bpt", "lt", "vcm"])
+def pairs():
+    """Every kind of light by every method; bidirectional path tracing has the techniques of the others but merging."""
+    pairs = [(integrator, name) for integrator in ("bpt", "lt", "vcm") for name in (*LIGHTS, "image", "all")]
+    fast = {("vcm", "image"), ("vcm", "all")}
+    return [
+        pytest.param(*pair, marks=() if pair[0] == "bpt" or pair in fast else pytest.mark.slow)
+        for pair in pairs
+    ]
+
+
+@pytest.mark.parametrize(("integrator", "name"), pairs())
 def test_methods_agree(lit, sky, by_path_tracing, name, integrator):
     """Path tracing finds all that there is: every method does."""
     image = radiance(room(lit, lights_of(sky)[name], integrator), 768)

@@ -59,7 +59,7 @@ def expected_mean():
 
 @pytest.mark.parametrize("integrator", ["lt", pytest.param("bpt", marks=pytest.mark.slow)])
 def test_a_point_in_a_mirror(integrator):
-    image = radiance(seen_in_mirror(integrator), 400)
+    image = radiance(seen_in_mirror(integrator), 400, techniques=True)  # by the kernel of the test below
     assert_mean(image, expected_mean(), 0.03)
     # The disk of confusion: in the focus plane the light of the lens has come within R |D - F| / D of the axis.
     blur = RADIUS * (BEHIND - FOCUS) / BEHIND
@@ -82,4 +82,4 @@ def test_nothing_else_finds_it():
 def test_a_point_is_not_seen_itself():
     """Of emitters without a surface only what they light is seen, by no method."""
     facing = seen_in_mirror("lt", max_path_length=1)
-    assert not radiance(facing, 16).mean.any()
+    assert not radiance(facing, 16, techniques=True).mean.any()

@@ -7,7 +7,7 @@ import numpy as np
 import artist_py
 from artist_py.compare.metrics import relmse, smape
 from artist_py.evidence.entries import with_seed
-from artist_py.film.color import RGB_TO_XYZ
+from artist_py.film.color import RGB_TO_XYZ, decode_srgb, encode_srgb
 from artist_py.film.contact_sheet import contact_sheet
 from artist_py.film.output import write_display
 from artist_py.film.replacing import replacing
@@ -16,6 +16,7 @@ from artist_py.samplers.render_job import RenderSettings
 from artist_py.samplers.snapshots import snapshots
 from artist_py.scene.reader import read_scene
 
+COLOURS = 128  # of pyramids
 REFERENCE_SEED = 0x5EED  # a reference by the method that it judges must not share its noise
 
 
@@ -125,8 +126,9 @@ def paint_techniques(picture, canvas, threads):
     images = result.techniques
     parts = images.pictures()
     canvas.write("-map", parts["false_colour"])
-    canvas.write("-pyramid", contact_sheet(images, True, canvas.mapping), ToneMapping())
-    reduce_colours(canvas.folder / canvas.names["-pyramid"], settings["colours"])
+    sheet = contact_sheet(images, True, canvas.mapping)
+    canvas.write("-pyramid", with_levels(sheet, settings["levels"]), ToneMapping())
+    reduce_colours(canvas.folder / canvas.names["-pyramid"], COLOURS)
     merged, connected = (float(np.mean(parts[name] @ RGB_TO_XYZ[1])) for name in ("merging", "connection"))
     return {
         "files": canvas.sizes,
@@ -138,8 +140,13 @@ def paint_techniques(picture, canvas, threads):
     }
 
 
+def with_levels(rgb, levels):
+    """Linear RGB in [0, 1] of which each channel has so many levels, evenly spaced where sRGB encodes them."""
+    return decode_srgb(np.round(encode_srgb(rgb) * (levels - 1)) / (levels - 1))
+
+
 def reduce_colours(path, count):
-    """Write a PNG anew with a palette of so many colours, without dithering: a third to a half of its bytes."""
+    """Write a PNG anew with a palette of so many colours, without dithering: half of its bytes."""
     from PIL import Image
 
     with replacing(path) as temporary, Image.open(path) as image:

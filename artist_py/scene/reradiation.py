@@ -17,12 +17,12 @@ import numpy as np
 from artist_py.errors import SceneError
 from artist_py.scene.fluorescent_types import MatrixFile
 from artist_py.scene.reradiation_files import read_matrix
+from artist_py.scene.reradiation_images import read_bispectral_image
 from artist_py.scene.spectra import ROUNDING, check_reflectance, tabulate
 from artist_py.scene.spectrum_types import Gaussian
 from artist_py.scene.where import problem
 
 EMISSION_RANGE = 200, 1600  # nm over which an emission is normalised
-SAME_WAVELENGTH = 1e-6  # nm
 CONSERVATION = 1e-6  # power that may be gained by rounding
 
 
@@ -89,35 +89,30 @@ def _two_gaussians(description, first, last):
 def _measured(material, first, last):
     """`(matrix, elastic reflectance, warnings)` of a measured matrix: each value holds for a band around it."""
     description = material.reradiation
-    measured = read_matrix(description.path)
-    warnings = []
-    if measured.n_clamped:
-        warnings.append(f"{description.path}: {measured.n_clamped} negative values taken as 0")
-    out, into = measured.emission[:, None], measured.excitation[None, :]
-    is_elastic = np.abs(out - into) < SAME_WAVELENGTH
-    is_anti_stokes = (out < into) & ~is_elastic & (measured.values > 0.0)
+    is_image = description.path.lower().endswith(".exr")
+    measured = (read_bispectral_image if is_image else read_matrix)(description.path)
+    warnings = list(measured.warnings)
+    is_anti_stokes = (measured.emission[:, None] < measured.excitation[None, :]) & (measured.values > 0.0)
     if is_anti_stokes.any() and not description.anti_stokes:
         warnings.append(
             f"{description.path}: {int(is_anti_stokes.sum())} values left out that say what is given off at shorter "
             "wavelengths than it was absorbed at; anti_stokes = true keeps them"
         )
-    values = np.where(is_elastic, 0.0, measured.values) * description.scale
+    values = measured.values * description.scale
     if description.unit == "per band":
         values = values / np.diff(_edges(measured.emission))[:, None]
     rows, columns = (_band_of(nm, first, last) for nm in (measured.emission, measured.excitation))
     padded = np.pad(values, ((0, 1), (0, 1)))  # the last row and column stand for what was not measured
     matrix = padded[rows][:, columns]
     matrix = matrix if description.anti_stokes else _stokes(matrix)
-    return matrix, _diagonal(measured, is_elastic, first, last), warnings
+    return matrix, _diagonal(measured, first, last), warnings
 
 
-def _diagonal(measured, is_elastic, first, last):
+def _diagonal(measured, first, last):
     """Elastic reflectance (bins,): what stands at equal wavelengths, linear between."""
-    where = is_elastic.any(axis=0)
-    if not where.any():
+    if not len(measured.reflected):
         return np.zeros(last - first)
-    values = np.where(is_elastic, measured.values, 0.0).sum(axis=0)
-    return np.interp(_centres(first, last), measured.excitation[where], values[where])
+    return np.interp(_centres(first, last), measured.reflected, measured.reflectance)
 
 
 def _edges(nm):

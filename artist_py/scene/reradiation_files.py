@@ -8,6 +8,7 @@ from artist_py.errors import Problem, SceneError
 from artist_py.scene.messages import expected
 from artist_py.scene.sample_files import fields_of, number_of, text_lines
 
+SAME_WAVELENGTH = 1e-6  # nm
 NOISE = 0.02  # negative values smaller than this share of the largest are noise
 
 
@@ -16,8 +17,10 @@ class MeasuredMatrix(NamedTuple):
 
     emission: np.ndarray  # nm, increasing (rows,)
     excitation: np.ndarray  # nm, increasing (columns,)
-    values: np.ndarray  # (rows, columns), none negative
-    n_clamped: int  # how many were negative, within the noise
+    values: np.ndarray  # (rows, columns), none negative; 0 where both wavelengths are the same
+    reflected: np.ndarray  # nm, increasing: where the reflectance was measured
+    reflectance: np.ndarray  # at these
+    warnings: list
 
 
 def read_matrix(path):
@@ -40,12 +43,27 @@ def read_matrix(path):
     emission, values = table[:, 0], table[:, 1:]
     _check_order(path, [header[0]] * len(excitation), excitation)
     _check_order(path, [line for line, _ in body], emission)
+    clean, warnings = without_noise(path, values.ravel(), lambda i: {"line": body[i // len(excitation)][0]})
+    values = clean.reshape(values.shape)
+    is_elastic = np.abs(emission[:, None] - excitation[None, :]) < SAME_WAVELENGTH
+    reflected = is_elastic.any(axis=0)
+    reflectance = np.where(is_elastic, values, 0.0).sum(axis=0)[reflected]
+    elsewhere = np.where(is_elastic, 0.0, values)
+    return MeasuredMatrix(emission, excitation, elsewhere, excitation[reflected], reflectance, warnings)
+
+
+def without_noise(path, values, place):
+    """`(values, warnings)` of values (n,), small negative ones as 0; SceneError of larger ones.
+
+    `place` maps the index of a value to what a `Problem` says of where it stands.
+    """
     negative = values < 0.0
-    worst = np.unravel_index(np.argmin(values), values.shape)
+    worst = int(np.argmin(values))
     if values[worst] < -NOISE * values.max():
         message = expected("values of at least 0, but for noise", values[worst])
-        raise SceneError([Problem(message, str(path), body[worst[0]][0])])
-    return MeasuredMatrix(emission, excitation, np.where(negative, 0.0, values), int(negative.sum()))
+        raise SceneError([Problem(message, str(path), **place(worst))])
+    warnings = [f"{path}: {int(negative.sum())} negative values taken as 0"] if negative.any() else []
+    return np.where(negative, 0.0, values), warnings
 
 
 def _numbers(path, line, fields):

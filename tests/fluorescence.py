@@ -9,11 +9,14 @@ from typing import NamedTuple
 
 import numpy as np
 from rendering import look, scene, shape
+from scipy import stats
 
 from artist_py.film.accumulation import Film
 from artist_py.samplers.render_job import RenderSettings, Silence, sampler_for
 from artist_py.samplers.wavelengths import sets_of_wavelengths
 
+FALSE_ALARM = 1e-4  # probability that one comparison fails by chance
+ROUNDING = 2e-5  # relative; long paths carry float32
 RANGE = [300, 780]
 INNER, OUTER = 0, 1
 RADII = (0.5, 1.5)
@@ -153,3 +156,15 @@ def iteration_images(compiled, iterations):
 def iteration_colours(compiled, iterations):
     """Mean RGB of the image of each iteration, (iterations, 3)."""
     return iteration_images(compiled, iterations).mean(axis=(1, 2))
+
+
+def assert_deviations_vanish(found, expected, precision):
+    """Images of iterations are as expected; t-test over iterations, per channel.
+
+    Deviations are relative to the brightest channel of their iteration, which differs from one to the next.
+    """
+    deviation = (found - expected) / np.abs(expected).max(axis=1, keepdims=True)
+    error = deviation.std(axis=0, ddof=1) / np.sqrt(len(found))
+    assert (error < precision).all(), error
+    limit = stats.t.ppf(1.0 - FALSE_ALARM / 6, len(found) - 1) * error + ROUNDING
+    assert (np.abs(deviation.mean(axis=0)) < limit).all(), (deviation.mean(axis=0), error)

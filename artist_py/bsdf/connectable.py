@@ -30,7 +30,8 @@ def sample_connectable(
         )  # fmt: skip
     if kind == PLASTIC:
         return sample_plastic(
-            needs.plastic, material, reflectance, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+            needs.plastic, needs.coated_dyes, material, reflectance, spectra, wavelengths, wo, u, v, w, ratio,
+            ior_outside, light_walk,
         )  # fmt: skip
     return absorption(wo, wavelengths, ratio)
 
@@ -61,7 +62,9 @@ def pdf_connectable(needs, material, reflectance, spectra, wavelengths, wo, wi):
     if kind == PHONG:
         return pdf_phong(needs.phong, material, reflectance, spectra, wavelengths, wo, wi)
     if kind == PLASTIC:
-        return pdf_plastic(needs.plastic, material, reflectance, spectra, wavelengths, wo, wi)
+        return pdf_plastic(
+            needs.plastic, needs.coated_dyes, material, reflectance, spectra, wavelengths, wo, wi
+        )
     return 0.0
 
 

@@ -6,12 +6,16 @@ the matrix from all of them to set 0 (core/sets.py). So where two subpaths meet 
 
 A fluorescent material is one that reflects elastically, and besides has a matrix of reradiation between each two
 sets. `fluorescence` is `Scene.fluorescence`: `None`, and nothing of this compiled, where no material fluoresces.
+Under a clear coat (plastic.py) the matrix holds all that happens below it, and the coat's transmittances are put to it
+here; what the coat mirrors stays at its wavelength.
 """
 
+from ..core.fresnel import fresnel_dielectric
 from ..core.sets import first_lanes, from_next_set, from_previous_set, received, row_of
 from ..core.vector import lane_max, splat
 from ..core.warp import INV_PI
 from ..jit import function
+from ..scene.tables import PLASTIC
 from .dispatch import is_black
 
 
@@ -22,7 +26,24 @@ def reradiation_factor(fluorescence, needs, material, wo, wi):
         return 0.0
     if material.fluorescence < 0 or wo.z * wi.z <= 0.0 or is_black(needs.one_sided, material, wo):
         return 0.0
-    return INV_PI
+    return INV_PI * _through_coat(needs.coated_dyes, material, wo, wi)
+
+
+@function
+def _through_coat(needed, material, wo, wi):
+    """T(wo) T(wi) / T_m of the coat (plastic.py), 1 where there is none."""
+    if needed is None:
+        return 1.0
+    if material.kind != PLASTIC:
+        return 1.0
+    return _transmitted(material, wo) * _transmitted(material, wi) / material.transmittance
+
+
+@function
+def _transmitted(material, w):
+    """T(w) of the coat, from either side of the surface."""
+    reflectance, _ = fresnel_dielectric(abs(w.z), material.ior)
+    return 1.0 - reflectance
 
 
 @function
@@ -58,18 +79,18 @@ def throughput_after(fluorescence, needs, material, throughput, elastic, sample,
 
 
 @function
-def ratio_after(fluorescence, material, ratio):
-    """r of (2.6) after a step: the hero is drawn anew where all wavelengths mix (theory 3.7)."""
+def ratio_after(fluorescence, material, sample):
+    """r of (2.6) after a sampled step: the hero is drawn anew where all wavelengths mix (theory 3.7)."""
     if fluorescence is None:
-        return ratio
-    return _new_ratio(ratio, material)
+        return sample.ratio
+    return _new_ratio(sample.ratio, material, sample.is_delta)
 
 
 @function
-def _new_ratio(ratio, material):
+def _new_ratio(ratio, material, is_delta):
     if ratio is None:
         return ratio
-    return ratio if material.fluorescence < 0 else splat(ratio, 1.0)
+    return ratio if material.fluorescence < 0 or is_delta else splat(ratio, 1.0)
 
 
 @function
@@ -96,12 +117,21 @@ def brightness(fluorescence, throughput):
 
 
 @function
-def albedo_under_white(fluorescence, material, reflectance, like):
-    """Radiance at the film's wavelengths of the material, its `reflectance` given, under light of 1 everywhere."""
+def albedo_under_white(fluorescence, needs, material, reflectance, wo, like):
+    """Radiance towards `wo` at the film's wavelengths of the material under light of 1 from everywhere.
+
+    `reflectance` is what it reflects at its own wavelengths.
+    """
     if fluorescence is None:
         return first_lanes(reflectance, like)
     white = splat(fluorescence.zero, 1.0)
-    total = scattered_light(
-        fluorescence, material, white, reflectance, 0.0 if material.fluorescence < 0 else 1.0
-    )
-    return first_lanes(total, like)
+    share = 0.0 if material.fluorescence < 0 else _leaving(needs.coated_dyes, material, wo)
+    return first_lanes(scattered_light(fluorescence, material, white, reflectance, share), like)
+
+
+@function
+def _leaving(needed, material, wo):
+    """Share of what is given off that comes out towards `wo`: the integral of pi f_fl cos over `wi`."""
+    if needed is None:
+        return 1.0
+    return 1.0 if material.kind != PLASTIC else _transmitted(material, wo)

@@ -10,6 +10,10 @@ By Stokes' reversion 1 - F_i = T_m / eta^2, where T_m is the transmittance of di
 the base's colour as seen through the coat, A = rho (1 - F_i) / (1 - rho F_i), this is
 f = T(wo) T(wi) A / (pi T_m), and the share of the light that is scattered is F(wo) + T(wo) A: all of it for
 rho = 1.
+
+Where the base fluoresces rho is a matrix over wavelengths, and so is A = (1 - F_i) rho (1 - F_i rho)^-1. What never
+meets a dye is the A of above; the rest is tabulated once (scene/reradiation.py) and given off by fluorescence.py. All
+that is left for here is to sample the base for the sake of it as well.
 """
 
 from ..core.frame import reflect
@@ -29,6 +33,14 @@ def colour_below(material, rho):
 
 
 @function
+def with_dyes(coated_dyes, material, below):
+    """A, and what the base gives off at other wavelengths besides: what lobes are chosen by."""
+    if coated_dyes is None:
+        return below
+    return below + splat(below, material.glow)
+
+
+@function
 def coat_reflectance(material, w):
     """F(w), of the mirroring coat."""
     reflectance, _ = fresnel_dielectric(w.z, material.ior)
@@ -39,8 +51,9 @@ def coat_reflectance(material, w):
 def mirror_probability(reflectance, below):
     """Probability of the mirrored direction: its share of the lanes' mean of F + (1 - F) A.
 
-    `reflectance` is F of the direction that is scattered, be it `wo` or, for the reverse walk, `wi`; the rest
-    depends on the material alone, so that both walks can tell both probabilities (theory 4.5).
+    `below` is A, with what dyes give off (`with_dyes`). `reflectance` is F of the direction that is scattered, be it
+    `wo` or, for the reverse walk, `wi`; the rest depends on the material alone, so that both walks can tell both
+    probabilities (theory 4.5).
     """
     if reflectance <= 0.0:
         return 0.0
@@ -59,14 +72,27 @@ def diffuse_pdf(reflectance, below, w):
 
 @function
 def sample_plastic(
-    needed, material, reflectance, spectra, wavelengths, wo, u, v, w, ratio, ior_outside, light_walk
+    needed,
+    coated_dyes,
+    material,
+    reflectance,
+    spectra,
+    wavelengths,
+    wo,
+    u,
+    v,
+    w,
+    ratio,
+    ior_outside,
+    light_walk,
 ):
     """The mirrored direction, or one of density cos / pi."""
     if needed is None:
         return absorption(wo, wavelengths, ratio)
     below = colour_below(material, reflectance)
+    shares = with_dyes(coated_dyes, material, below)
     mirrored = coat_reflectance(material, wo)
-    probability = mirror_probability(mirrored, below)
+    probability = mirror_probability(mirrored, shares)
     if w < probability:
         return delta_sample(reflect(wo), splat(wavelengths, mirrored / probability), probability, 1.0, ratio)
     wi = square_to_cosine_hemisphere(u, v)
@@ -74,8 +100,8 @@ def sample_plastic(
         return absorption(wo, wavelengths, ratio)
     mirrored_back = coat_reflectance(material, wi)
     weight = below * (through(material, mirrored, mirrored_back) / (1.0 - probability))
-    pdf = diffuse_pdf(mirrored, below, wi)
-    return BsdfSample(wi, weight, pdf, diffuse_pdf(mirrored_back, below, wo), 1.0, False, ratio)
+    pdf = diffuse_pdf(mirrored, shares, wi)
+    return BsdfSample(wi, weight, pdf, diffuse_pdf(mirrored_back, shares, wo), 1.0, False, ratio)
 
 
 @function
@@ -94,11 +120,12 @@ def evaluate_plastic(needed, material, reflectance, spectra, wavelengths, wo, wi
 
 
 @function
-def pdf_plastic(needed, material, reflectance, spectra, wavelengths, wo, wi):
+def pdf_plastic(needed, coated_dyes, material, reflectance, spectra, wavelengths, wo, wi):
     """Density of sampling `wi` from `wo` by the diffuse part, with its probability, sr^-1."""
     if needed is None:
         return 0.0
-    return diffuse_pdf(coat_reflectance(material, wo), colour_below(material, reflectance), wi)
+    shares = with_dyes(coated_dyes, material, colour_below(material, reflectance))
+    return diffuse_pdf(coat_reflectance(material, wo), shares, wi)
 
 
 @function

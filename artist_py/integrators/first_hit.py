@@ -87,7 +87,7 @@ def _add_albedo(scene, camera, sensing, stream, surface, origin, direction, row,
     albedo = reflectance_bsdf(
         scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, vertex.wo, outside
     )
-    albedo = albedo_under_white(scene.fluorescence, material, albedo, weights)
+    albedo = albedo_under_white(scene.fluorescence, scene.needs, material, albedo, vertex.wo, weights)
     red, green, blue = rgb_of(scene.spectra, albedo * weights, wavelengths)
     hits.albedo[row, column, 0] += red
     hits.albedo[row, column, 1] += green

@@ -90,6 +90,12 @@ def compile_scene(graph, threads=None):
     placements = geometry.placements(materials.rows)
     media = materials.media_table() if _dielectrics_touch(geometry, placements, materials.table) else None
     emitter_table = emitters.table()
+    fluorescent = fluorescent_scene(
+        materials.glows, sensor, emitters.light, first, graph.render.wavelength_sets
+    )
+    if fluorescent is not None:
+        glowing = materials.table["fluorescence"] >= 0
+        materials.table["glow"][glowing] = fluorescent.shares[materials.table["fluorescence"][glowing]]
     needs = _needs(graph, geometry, materials, emitter_table, media)
     dense = spectra.dense()
     assert sensor_rows == [0, 1, 2]  # noqa: S101 - an observer's three responses differ
@@ -118,9 +124,6 @@ def compile_scene(graph, threads=None):
     geometry.warnings += method_warnings(graph.render.integrator, scene)
     if not emitters.light.any():
         geometry.warnings.append(f"nothing emits light from {first} to {last} nm: the image will be black")
-    fluorescent = fluorescent_scene(
-        materials.glows, sensor, emitters.light, first, graph.render.wavelength_sets
-    )
     nodes = inverse_cdf(wavelength_density(sensor, emitters.light), first)
     return CompiledScene(
         graph,
@@ -204,6 +207,7 @@ def _needs(graph, geometry, materials, emitters, media):
         "one_sided": bool((materials.table["two_sided"][1:] == 0).any()),
         "textures": bool((materials.table["texture"] >= 0).any()),
         "fluorescence": bool(materials.glows),
+        "coated_dyes": any(glow.is_coated for glow in materials.glows),
         "shared_wavelengths": graph.render.wavelengths == "shared",
     }
     present |= {name for name, condition in conditions.items() if condition}

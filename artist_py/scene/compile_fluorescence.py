@@ -11,6 +11,7 @@ from artist_py.scene.messages import show
 from artist_py.scene.where import problem
 
 EVENTS = 3  # fluorescent events in a row that densities of wavelengths think of
+FLAT = 0.1  # share that equal light has in what dyes under a coat are sampled by: none that can shine is left out
 
 
 @dataclass(frozen=True)
@@ -21,6 +22,7 @@ class FluorescentScene:
     totals: (
         np.ndarray
     )  # share of the power that is scattered at all, by where it arrives; float64 (materials, bins)
+    shares: np.ndarray  # of the scene's light given off at other wavelengths; float64 (materials,)
     set_nodes: tuple  # inverse distribution of each set, nm
 
     @property
@@ -69,8 +71,17 @@ def fluorescent_scene(glows, sensor, light, first, n_sets):
     seen = wavelength_density(sensor, everywhere)
     mixture = excitation_density(seen, everywhere, yields.sum(axis=0))
     densities = [seen if n_sets > 1 else mixture] + [mixture] * (n_sets - 1)
-    totals = np.minimum(np.array([glow.reflectance for glow in glows]) + yields, 1.0)
-    return FluorescentScene(matrices, totals, tuple(inverse_cdf(density, first) for density in densities))
+    # What a coat mirrors may be all of the light, at grazing angles.
+    elastic = np.array([np.ones_like(light) if glow.is_coated else glow.reflectance for glow in glows])
+    shares = (1.0 - FLAT) * _mean(yields, everywhere) + FLAT * yields.mean(axis=1)
+    nodes = tuple(inverse_cdf(density, first) for density in densities)
+    return FluorescentScene(matrices, np.minimum(elastic + yields, 1.0), shares, nodes)
+
+
+def _mean(yields, light):
+    """Means (materials,) of yields (materials, bins) over light (bins,); 0 in the dark."""
+    power = light.sum()
+    return yields @ light / power if power > 0.0 else np.zeros(len(yields))
 
 
 def _light_after_events(matrix, light):

@@ -21,7 +21,7 @@ KINDS = {
     scene_graph.OrenNayar: tables.OREN_NAYAR,
     scene_graph.Phong: tables.PHONG,
     scene_graph.Plastic: tables.PLASTIC,
-    scene_graph.Fluorescent: tables.DIFFUSE,  # with a row of `Fluorescence`
+    scene_graph.Fluorescent: tables.DIFFUSE,  # with a row of `Fluorescence`; under a coat PLASTIC
     scene_graph.Mirror: tables.MIRROR,
     scene_graph.Conductor: tables.CONDUCTOR,
     scene_graph.Dielectric: tables.DIELECTRIC,
@@ -103,7 +103,10 @@ class MaterialCompiler:
         row["roughness"] = math.radians(material.roughness)
 
     def _fill_plastic(self, row, material):
-        row["ior"], row["transmittance"] = material.ior, diffuse_transmittance(material.ior)
+        self._coat(row, material.ior)
+
+    def _coat(self, row, ior):
+        row["ior"], row["transmittance"] = ior, diffuse_transmittance(ior)
 
     def _fill_phong(self, row, material):
         row["exponent"] = material.exponent
@@ -120,6 +123,9 @@ class MaterialCompiler:
     def _fill_fluorescent(self, row, material):
         glow = glow_of(material, self.spectra.first, self.spectra.last)
         row["reflectance"], row["fluorescence"] = self.spectra.row(glow.reflectance), len(self.glows)
+        if material.coat_ior is not None:
+            row["kind"] = tables.PLASTIC
+            self._coat(row, material.coat_ior)
         self.glows.append(glow)
         self.warnings += glow.warnings
 

@@ -43,6 +43,7 @@ FEATURES = {
     "one_sided": ("materials that are black from behind", "every material is two-sided"),
     "textures": ("reflectances that vary over surfaces", "no material has a texture"),
     "fluorescence": ("light given off at other wavelengths, sets of wavelengths", "no material fluoresces"),
+    "coated_dyes": ("fluorescence under a clear coat", "no fluorescent material has a coat"),
     "shared_wavelengths": ("one set of wavelengths per iteration", "every path has its own wavelengths"),
 }
 

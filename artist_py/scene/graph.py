@@ -46,6 +46,7 @@ WHITE_LUMINANCE = {"CIE 1931 2": 72983.4866019817, "CIE 1964 10": 79680.29516501
 _count = Number(at_least=1, whole=True)
 _share = SpectrumField(Number(at_least=0, at_most=1))
 _radiance = SpectrumField(Number(at_least=0))
+_coat = Number(at_least=1, at_most=10)
 _positive_spectrum = SpectrumField(Number(above=0))
 
 
@@ -284,12 +285,15 @@ class Plastic(Material):
     """type = "plastic": matte under a smooth clear coat."""
 
     reflectance: Spectrum | Texture = key(_reflectance, Constant(0.5))  # of what is under the coat
-    ior: float = key(Number(at_least=1, at_most=10), 1.5)  # of the coat, over that of what surrounds it
+    ior: float = key(_coat, 1.5)  # of the coat, over that of what surrounds it
 
 
 @node
 class Fluorescent(Material):
-    """type = "fluorescent": Lambert, and light given off at longer wavelengths than it was absorbed at."""
+    """type = "fluorescent": Lambert, and light given off at longer wavelengths than it was absorbed at.
+
+    With `coat_ior` it is the base of plastic.
+    """
 
     reflectance: Spectrum | None = key(share, None)  # default: the diagonal of a measured matrix, else 0
     absorption: Spectrum | None = key(share, None)  # of a dye: share of the light, by wavelength
@@ -297,6 +301,7 @@ class Fluorescent(Material):
     quantum_yield: float = key(Number(at_least=0, at_most=1), 1.0)  # of the dye: photons per photon absorbed
     dyes: tuple[Dye, ...] | None = key(dyes, None)  # instead, or besides
     reradiation: Reradiation | None = key(reradiation, None)  # instead, or besides
+    coat_ior: float | None = key(_coat, None)  # of a clear coat over it, as that of plastic; default: no coat
 
     def all_dyes(self):
         """The dyes, that of the material's own keys first."""

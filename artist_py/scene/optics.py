@@ -113,6 +113,14 @@ def diffuse_transmittance(ior):
     return float(np.sum(2.0 * weights * roots**3 * entering))
 
 
+def internal_reflectance(ior):
+    """Share of diffuse light inside a smooth medium of the relative index `ior` >= 1 that its surface reflects back.
+
+    By Stokes' reversion n^2 times as much comes in as goes out.
+    """
+    return 1.0 - diffuse_transmittance(ior) / (ior * ior)
+
+
 def metal_table(name, first_nm, last_nm, node=None):
     """Complex refractive index (eta, k) of a metal at the centres of the 1 nm bins; two float64 arrays.
 

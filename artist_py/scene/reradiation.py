@@ -8,6 +8,9 @@ bins of 1 nm. A dye gives off Q a(in) photons per photon; of emission e, power p
 
 Light is given off at longer wavelengths than it was absorbed at (Stokes), bins on the diagonal left out; what a
 dye's emission has at shorter ones is lost.
+
+Under a clear coat (bsdf/plastic.py) the share F_i of what leaves the base comes back to it, again and again. With
+B = diag(rho) + R, of all that has entered the coat (1 - F_i) B (1 + F_i B + ..) = (1 - F_i) B (1 - F_i B)^-1 leaves it.
 """
 
 from typing import NamedTuple
@@ -16,6 +19,7 @@ import numpy as np
 
 from artist_py.errors import SceneError
 from artist_py.scene.fluorescent_types import MatrixFile
+from artist_py.scene.optics import internal_reflectance
 from artist_py.scene.reradiation_files import read_matrix
 from artist_py.scene.reradiation_images import read_bispectral_image
 from artist_py.scene.spectra import ROUNDING, check_reflectance, tabulate
@@ -29,9 +33,10 @@ CONSERVATION = 1e-6  # power that may be gained by rounding
 class Glow(NamedTuple):
     """A fluorescent material over the bins of a scene."""
 
-    reflectance: np.ndarray  # elastic (bins,)
-    matrix: np.ndarray  # R, 1 / nm (bins out, bins in)
+    reflectance: np.ndarray  # elastic, of the base where there is a coat (bins,)
+    matrix: np.ndarray  # R, 1 / nm (bins out, bins in); from within the coat to within, where there is one
     warnings: list
+    is_coated: bool = False
 
 
 def glow_of(material, first, last):
@@ -55,7 +60,23 @@ def glow_of(material, first, last):
     if message := check_reflectance(reflectance, first):
         raise SceneError([problem(material, "reflectance", message)])
     _check_power(material, first, reflectance, absorbed, matrix)
-    return Glow(np.clip(reflectance, 0.0, 1.0), matrix, warnings)
+    reflectance = np.clip(reflectance, 0.0, 1.0)
+    if material.coat_ior is None:
+        return Glow(reflectance, matrix, warnings)
+    return Glow(reflectance, under_coat(reflectance, matrix, material.coat_ior), warnings, True)
+
+
+def under_coat(reflectance, matrix, ior):
+    """What is given off at other wavelengths of light that has entered the coat, 1 / nm (bins out, bins in).
+
+    With g = 1 / (1 - F_i rho), which is what light that stays at its wavelength grows to, it is
+    (1 - F_i) diag(g) R (1 - F_i B)^-1: the last dye's light, and all that may have happened before.
+    """
+    inside = internal_reflectance(ior)
+    last = matrix * ((1.0 - inside) / (1.0 - inside * reflectance))[:, None]
+    before = np.eye(len(matrix)) - inside * (np.diag(reflectance) + matrix)
+    # Transposed it is triangular for light that is given off at longer wavelengths: zeros stay zeros.
+    return np.maximum(np.linalg.solve(before.T, last.T).T, 0.0)
 
 
 def _centres(first, last):

@@ -97,6 +97,10 @@ material_dtype = np.dtype(
         ("transmittance", "f8"),  # plastic: share of diffuse light from outside that enters the coat
         ("roughness", "f8"),  # Oren-Nayar: standard deviation of facet slopes' angle, radians
         ("exponent", "f8"),  # Phong: n of cos^n
+        (
+            "glow",
+            "f8",
+        ),  # of a fluorescent material: share of the scene's light that it gives off at other wavelengths
     ],
     align=True,
 )
@@ -276,6 +280,7 @@ class Needs(NamedTuple):
     one_sided: bool | None = None  # a material that is black from behind
     textures: bool | None = None
     fluorescence: bool | None = None
+    coated_dyes: bool | None = None  # a fluorescent material under a clear coat
     shared_wavelengths: bool | None = None
 
 

@@ -185,7 +185,7 @@ def scatter(scene, vertex, path, wavelengths, stream, pair, u_lobe, light_walk):
         0.0 if sample.is_delta else sample.pdf,
         surface.position,
         path.radiance_scale * sample.eta * sample.eta,
-        ratio_after(scene.fluorescence, material, sample.ratio),
+        ratio_after(scene.fluorescence, material, sample),
         beyond if is_refracted else path.media,
         not is_kept,
     )

@@ -28,6 +28,7 @@ ONLY = {
     "lens": ("cameras.lens", "sample_aperture"),
     "diffuse": ("core.warp", "square_to_cosine_hemisphere"),
     "fluorescence": ("bsdf.fluorescence", "reradiated"),
+    "coated_dyes": ("bsdf.fluorescence", "_transmitted"),
 }
 
 SCRIPT = """
@@ -70,7 +71,8 @@ RICH = """scene(
     materials={"flint": {"type": "dielectric", "ior": "N-SF11"}, "water": {"type": "dielectric", "ior": 1.33},
                "gold": {"type": "conductor", "metal": "Au"}, "silver": {"type": "mirror"},
                "pane": {"type": "thin-dielectric"},
-               "dye": {"type": "fluorescent", "reradiation": {"excitation": [400, 30], "emission": [500, 20]}}},
+               "dye": {"type": "fluorescent", "reradiation": {"excitation": [400, 30], "emission": [500, 20]},
+                       "coat_ior": 1.5}},
     objects={"ball": [shape("sphere", "gold", center=[0, 0, 0], radius=0.2)]},
     instances=[{"object": "ball", "transform": [{"translate": [1, 1, 1]}]}],
     camera=look([0, 0, 0], [0, 1, 0]) | {"type": "thin-lens", "aperture_radius": 0.1, "focus_distance": 2},

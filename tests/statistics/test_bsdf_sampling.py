@@ -16,7 +16,7 @@ from artist_py.jit import kernel
 from artist_py.scene.optics import diffuse_transmittance
 from artist_py.scene.tables import DIFFUSE, OREN_NAYAR, PHONG, PLASTIC, Needs, Spectra, material_dtype
 
-NEEDS = Needs(diffuse=True, oren_nayar=True, phong=True, plastic=True, one_sided=True)
+NEEDS = Needs(diffuse=True, oren_nayar=True, phong=True, plastic=True, coated_dyes=True, one_sided=True)
 MATT, GLOSSY = 0, 1  # rows of the spectra
 SPECTRA = Spectra(Table(np.array([[0.5], [0.3]], np.float32)), None, 380.0)
 WAVELENGTHS = Spectrum([550.0])
@@ -30,6 +30,7 @@ MATERIALS = {
     "phong": {"kind": PHONG, "specular": GLOSSY, "exponent": 25.0},
     "broad phong": {"kind": PHONG, "specular": GLOSSY, "exponent": 0.5},
     "plastic": {"kind": PLASTIC, "ior": 1.5, "transmittance": diffuse_transmittance(1.5)},
+    "coated dyes": {"kind": PLASTIC, "ior": 1.5, "transmittance": diffuse_transmittance(1.5), "glow": 0.3},
     "one-sided": {"kind": DIFFUSE, "two_sided": 0},
     "one-sided phong": {"kind": PHONG, "specular": GLOSSY, "exponent": 25.0, "two_sided": 0},
 }

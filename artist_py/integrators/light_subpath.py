@@ -21,6 +21,7 @@ from ..transport.mis import Partial, on_arrival, partial_after
 from ..transport.recording import LT
 from ..transport.roulette import local_survival, survived
 from ..transport.shares import is_chosen, is_vertex_wanted
+from ..transport.shifting import as_power, keep_wavelength, shifted_onwards, wavelengths_of_light
 from ..transport.splats import choose_pixel, store_splat
 from ..transport.subpath import Path, go_straight, is_passed_through, scatter, vertex_at
 from ..transport.vertices import store_vertex
@@ -66,8 +67,9 @@ def _trace(needed, emitters, setup, thread, index, pixel, stream, wavelengths):
     start = sample_emission(setup.scene, emitter, u, v, u_direction, v_direction)
     if not start.density > 0.0:
         return Walk(black(wavelengths), 0, 0)
+    wavelengths, weights = wavelengths_of_light(setup.scene.reemission, wavelengths, stream)
     radiance = emitted_radiance(setup.scene, emitter, start.direction, wavelengths)
-    throughput = radiance * (start.cos_theta / start.density)
+    throughput = as_power(weights, radiance * (start.cos_theta / start.density))
     origin = offset_position(start.position, start.normal, start.extent, start.direction)
     path = Path(
         origin, start.direction, throughput, 0.0, start.position, 1.0, setup.sensing.ratio, emitter.media, False
@@ -103,10 +105,12 @@ def _walk(  # noqa: C901 - one loop, a line or two per step of the walk
         if not vertex.is_sampled_back:  # no eye walk could go back there
             break
         here = counts_at(scene, setup.method, counts, surface)
+        arrived = wavelengths
+        vertex, wavelengths = shifted_onwards(scene.reemission, material, vertex, wavelengths, stream, length)
         survival = local_survival(scene, vertex, wavelengths)
         pair = FIRST_VERTEX + (length - 1) * PAIRS_PER_VERTEX
         if not is_delta_bsdf(material):
-            _store(setup, thread, index, surface, path, partial, length)
+            _store(setup, thread, index, surface, path, partial, length, arrived)
             shadow_rays += splat(
                 setup, here, thread, index, vertex, partial, survival, path, wavelengths, stream, length
             )
@@ -153,17 +157,18 @@ def _next_record(pool, thread):
 
 
 @function
-def _store(setup, thread, index, surface, path, partial, length):
+def _store(setup, thread, index, surface, path, partial, length, wavelengths):
     if is_vertex_wanted(setup.method.chosen, index):
-        _store_in(setup.stores.light, setup.stores.paths, thread, index, surface, path, partial, length)
+        _store_in(setup.stores.light, setup, thread, index, surface, path, partial, length, wavelengths)
 
 
 @function
-def _store_in(pool, paths, thread, index, surface, path, partial, length):
+def _store_in(pool, setup, thread, index, surface, path, partial, length, wavelengths):
     if pool is None:
         return
     store_vertex(pool, thread, surface, -path.direction, path.throughput, partial, length, index)
-    paths[index].n_vertices += 1
+    keep_wavelength(setup.scene.reemission, pool, thread, wavelengths)
+    setup.stores.paths[index].n_vertices += 1
 
 
 @function

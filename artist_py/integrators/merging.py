@@ -28,7 +28,7 @@ def gather(setup, grid, merging, progress, image):
             break
         for index in range(chunk * CHUNK, chunk * CHUNK + eye.used[chunk]):
             record = eye.records[index]
-            wavelengths, weights = wavelengths_of_pixel(rotation, sensing, shared, record.pixel)
+            wavelengths, weights = wavelengths_of_pixel(setup.stores.offsets, sensing, shared, record.pixel)
             stored = load_vertex(scene, record, given(sensing.start, sensing.zero), wavelengths)
             survival = local_survival(scene, stored.vertex, wavelengths)
             place = Place(record.pixel // width, record.pixel % width, wavelengths, weights)

@@ -20,6 +20,7 @@ from ..transport.next_event import connect_to_emitter, radiance_of_background, r
 from ..transport.recording import HIT, NEE, Place, TechniqueTables, record
 from ..transport.roulette import Limits, after_roulette, is_ended_by_roulette
 from ..transport.sensing import Sensing, store_sample, wavelengths_of_path
+from ..transport.shifting import shifted_back
 from ..transport.subpath import go_straight, is_passed_through, scatter, start_path, vertex_at
 
 TILE = 32
@@ -141,7 +142,7 @@ def path_radiance(scene, limits, sensing, stream, origin, direction, media, plac
         rays += 1
         hit = closest_hit(scene.geometry.embree, path.origin, path.direction, np.inf)
         if hit.geometry == INVALID_ID:
-            background = radiance_of_background(scene, path, length, place, techniques)
+            background = radiance_of_background(scene, path, length, place, wavelengths, techniques)
             radiance = radiance + received(scene.fluorescence, path.throughput, background)
             break
         surface = surface_at(scene.geometry, scene.needs, path.origin, path.direction, hit)
@@ -156,6 +157,7 @@ def path_radiance(scene, limits, sensing, stream, origin, direction, media, plac
             break
         pair = FIRST_VERTEX + (length - 1) * PAIRS_PER_VERTEX
         vertex = vertex_at(scene, surface, path, wavelengths)
+        vertex, wavelengths = shifted_back(scene.excitation, material, vertex, wavelengths, stream, length)
         u_select, u_lobe = choice_numbers(scene, stream, pair + CHOICE)
         if not is_delta_bsdf(material):
             direct = connect_to_emitter(scene, vertex, wavelengths, stream, pair + EMITTER, u_select)

@@ -19,7 +19,7 @@ def render_aovs(compiled, sampler, settings, observer):
     tables = FirstHits(*(Table(array) for array in hits))
     for sample in range(SAMPLES):
         progress = np.zeros(4, np.int64)
-        scene, sensing = sampler.scene_and_sensing(sample, None)
+        scene, sensing = _scene_and_sensing(compiled, sampler, sample)
         work = Pass(
             sampler.seed + SEED_OFFSET,
             sample,
@@ -33,6 +33,13 @@ def render_aovs(compiled, sampler, settings, observer):
             sampler.compile_calls([(trace_first_hits, arguments)], observer)
         sampler.run([(trace_first_hits, arguments)] * sampler.threads)
     return {name: values for name, values in _finished(compiled, hits).items() if name in settings.aovs}
+
+
+def _scene_and_sensing(compiled, sampler, sample):
+    """As the sampler has them; where wavelengths shift, with sets of them, which albedos take fewer samples by."""
+    if compiled.fluorescence is not None:
+        return sampler.fluorescent_scene_and_sensing(sample, None)
+    return sampler.scene_and_sensing(sample, None)
 
 
 def _finished(compiled, hits):

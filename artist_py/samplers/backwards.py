@@ -19,14 +19,15 @@ from ..integrators.methods import has_lens_hits, method_of, subset_of
 from ..integrators.pair import Setup, Stores, path_dtype
 from ..integrators.path_tracing import RAYS, SHADOW_RAYS, STOP, Pass
 from ..transport.merge import Merging
-from ..transport.photon_grid import Grid, count_photons, photon_dtype, place_photons
+from ..transport.photon_grid import Grid, count_photons, place_photons
 from ..transport.rotation import Rotation
+from ..transport.shifting import Matching
 from ..transport.splats import splat_dtype
 from ..transport.vertices import CHUNK, NEXT_CHUNK, SHORTAGE, Pool
-from .memory import RECORDS_PER_PATH, lanes_of, stored_vertex_dtype
+from .memory import RECORDS_PER_PATH, lanes_of, stored_photon_dtype, stored_vertex_dtype
 from .pilot import Pilot
 from .stochastic import StochasticSampler
-from .wavelengths import mean_acceptance, van_der_corput
+from .wavelengths import mean_acceptance, tolerance_of, van_der_corput
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 SHARES_SEED = 0x5348  # makes the random starts of shares others than those of wavelengths
@@ -82,11 +83,9 @@ class BackwardsSampler(StochasticSampler):
         self.lanes, eye_lanes = lanes_of(compiled)
         self.counts = {"light_vertices": 0, "eye_vertices": 0, "merges": 0}
         self.phases = dict.fromkeys(("subpaths", "photon_grid", "merging", "light_image", "film"), 0.0)
-        self.offsets = self._offsets(compiled, render)
-        self.acceptance = 1.0
-        if self.offsets is not None:
-            tolerance = self.merging.wavelength_tolerance
-            self.acceptance = mean_acceptance(compiled.nodes, self.lanes, tolerance)
+        self.offsets = self._offsets(render)
+        # Whether photons have one wavelength each, which shifts (transport/shifting.py), instead of heroes.
+        self.matches = self.offsets is not None and compiled.scene.reemission is not None
         self.paths = Table(np.zeros(math.ceil(self.n_pixels * self.light_paths) + 1, path_dtype))
         self.light = self._pool(
             stored_vertex_dtype(compiled, self.lanes), self.subset.connect or self.subset.merge
@@ -102,11 +101,16 @@ class BackwardsSampler(StochasticSampler):
 
     # --- stores
 
-    def _offsets(self, compiled, render):
+    def _offsets(self, render):
         """Room for what places each pixel's wavelengths, where merges ask for it; else `None`."""
         if render.wavelengths != "rotate" or not self.subset.merge:
             return None
         return Table(np.zeros(self.n_pixels))
+
+    @property
+    def _rotated_offsets(self):
+        """`offsets` where heroes have to be brought in line, else `None`."""
+        return None if self.matches else self.offsets
 
     def _pool(self, dtype, is_needed):
         """An empty pool with room for some records per path, or `None`."""
@@ -176,7 +180,7 @@ class BackwardsSampler(StochasticSampler):
             self.n_pixels,
             self.light_paths,
             van_der_corput(iteration),
-            math.pi * radius**2 * self.acceptance,  # n_vm P_acc (2.7)
+            math.pi * radius**2 * self._acceptance(iteration),  # n_vm P_acc (2.7)
             compiled.graph.render.heuristic == "power",
             has_lens_hits(self.subset, compiled.camera),
             compiled.graph.render.samples,
@@ -190,6 +194,13 @@ class BackwardsSampler(StochasticSampler):
         camera, pixel_filter = compiled.camera, compiled.pixel_filter
         return Setup(scene, camera, pixel_filter, sensing, self.limits, work, method, stores), radius
 
+    def _acceptance(self, iteration):
+        """Mean P_acc (2.7) of an iteration's merges."""
+        if self._rotated_offsets is None:
+            return 1.0
+        tolerance = tolerance_of(self.merging, iteration)
+        return mean_acceptance(self.compiled.nodes, self.lanes, tolerance)
+
     def _count_pilot_photons(self):
         """Have the photon density that weights ask for, before the first iteration."""
         if self.pilot is None or self.pilot.is_done:
@@ -202,7 +213,7 @@ class BackwardsSampler(StochasticSampler):
     def _grid(self, n_photons, radius):
         """An empty grid for so many photons."""
         buckets = 1 << max((n_photons - 1).bit_length(), 4)
-        photons = np.empty(n_photons, photon_dtype(self.lanes, self.offsets is not None))
+        photons = np.empty(n_photons, stored_photon_dtype(self.compiled, self.lanes))
         return Grid(Table(photons), Table(np.zeros(buckets + 1, np.int32)), 2.0 * radius)
 
     def _sharp_materials(self):
@@ -218,12 +229,15 @@ class BackwardsSampler(StochasticSampler):
         return int(n_vertices.sum())
 
     def _merging(self, setup, radius):
+        tolerance = tolerance_of(self.merging, setup.work.iteration)
+        ends = map(float, self.compiled.wavelength_range)
         return Merging(
             radius,
             1.0 / (math.pi * radius**2 * setup.method.n_photon_paths),
             self.merging.min_normal_cosine,
             True if self.merging.kernel == "epanechnikov" else None,
-            self.offsets and Rotation(self.merging.wavelength_tolerance, self.offsets),
+            None if self._rotated_offsets is None else Rotation(tolerance, self.offsets),
+            Matching(tolerance, *ends) if self.matches else None,
         )
 
     def _merge(self, setup, radius):
@@ -235,6 +249,7 @@ class BackwardsSampler(StochasticSampler):
         grid = self._grid(self._most_photons(share), radius)
         ranges = list(pairwise(np.linspace(0, len(grid.starts) - 1, self.threads + 1).astype(int).tolist()))
         records = self.light.records
+        own = self._rotated_offsets, self.matches or None
         counts = self.run(
             [(count_photons, (grid, records, self.paths, share, materials, *each)) for each in ranges]
         )
@@ -242,7 +257,7 @@ class BackwardsSampler(StochasticSampler):
         places = zip(ranges, before, strict=False)
         self.run(
             [
-                (place_photons, (grid, records, self.paths, share, materials, *each, start, self.offsets))
+                (place_photons, (grid, records, self.paths, share, materials, *each, start, *own))
                 for each, start in places
             ]
         )
@@ -277,7 +292,7 @@ class BackwardsSampler(StochasticSampler):
             grid, merging = self._grid(0, radius), self._merging(setup, radius)
             given = grid, self.light.records, self.paths, setup.method.chosen.merge, self._sharp_materials()
             calls.append((count_photons, (*given, 0, 0)))
-            calls.append((place_photons, (*given, 0, 0, 0, self.offsets)))
+            calls.append((place_photons, (*given, 0, 0, 0, self._rotated_offsets, self.matches or None)))
             calls.append((gather, (setup, grid, merging, Table(np.zeros(2, np.int64)), image)))
         if self.pilot is not None:
             calls.append(self.pilot.jobs(self)[0])

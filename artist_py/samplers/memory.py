@@ -19,15 +19,21 @@ FEWEST_LIGHT_PATHS = 0.05  # per pixel
 def lanes_of(compiled):
     """Numbers that the throughput of a light subpath has, and of an eye subpath (core/sets.py)."""
     count = compiled.graph.render.hero_count
-    if compiled.fluorescence is None:
+    if not compiled.has_sets:
         return count, count
     return compiled.fluorescence.n_sets * count, compiled.fluorescence.n_sets * count**2
 
 
 def stored_vertex_dtype(compiled, lanes):
     """Layout of the vertices that a render stores, of subpaths whose throughput has so many numbers."""
-    needs = compiled.scene.needs
-    return vertex_dtype(lanes, needs.smooth_triangles is not None, needs.textures is not None)
+    needs, shifts = compiled.scene.needs, compiled.scene.reemission is not None
+    return vertex_dtype(lanes, needs.smooth_triangles is not None, needs.textures is not None, shifts)
+
+
+def stored_photon_dtype(compiled, lanes):
+    """Layout of the photons of a render: each has its own wavelengths, those of its iteration, or one that shifts."""
+    shifts = compiled.scene.reemission is not None
+    return photon_dtype(lanes, compiled.graph.render.wavelengths == "rotate" and not shifts, shifts)
 
 
 def crop_of(graph):
@@ -64,11 +70,18 @@ def memory_estimate(compiled, settings):
         "geometry": sum(array.nbytes for array in arrays) + (emitters.records.nbytes if emitters else 0),
         "acceleration structure": BYTES_PER_FACE * faces,
         "spectra": compiled.spectra.nbytes
-        + (compiled.fluorescence.matrices.nbytes if compiled.fluorescence else 0),
+        + (_bytes_of_fluorescence(compiled) if compiled.fluorescence else 0),
         "textures": sum(image.nbytes for image in compiled.texture_images),
         "eye vertices": pixels * _bytes_per_eye_path(compiled),
         "light vertices": round(pixels * light_paths * _bytes_per_light_path(compiled)),
     }
+
+
+def _bytes_of_fluorescence(compiled):
+    """Matrices in float64, and where wavelengths shift one copy in float32 for eye or two for light subpaths."""
+    scene, matrices = compiled.scene, compiled.fluorescence.matrices.nbytes
+    copies = (scene.excitation is not None) + 2 * (scene.reemission is not None)
+    return round(matrices * (1.0 + 0.5 * copies))
 
 
 def _bytes_of_techniques(compiled, settings):
@@ -93,7 +106,7 @@ def _bytes_per_light_path(compiled):
     method = _subset(render)
     if method is None:
         return 0
-    size, photon = 40, photon_dtype(lanes, render.wavelengths == "rotate")
+    size, photon = 40, stored_photon_dtype(compiled, lanes)
     if method.merge:
         size += RECORDS_PER_PATH * (stored_vertex_dtype(compiled, lanes).itemsize + photon.itemsize + 8)
     if method.light_image:

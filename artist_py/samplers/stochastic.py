@@ -84,8 +84,8 @@ class StochasticSampler:
     def scene_and_sensing(self, iteration, bands):
         """The scene's tables and the sensor at the wavelengths of `iteration`."""
         compiled = self.compiled
-        if compiled.fluorescence is not None:
-            return self._fluorescent_scene_and_sensing(iteration, bands)
+        if compiled.has_sets:
+            return self.fluorescent_scene_and_sensing(iteration, bands)
         render = compiled.graph.render
         zero, one = Spectrum(np.zeros(render.hero_count)), Spectrum(np.ones(render.hero_count))
         ratio = one if compiled.scene.needs.dispersion else None
@@ -99,7 +99,7 @@ class StochasticSampler:
             zero, ratio, Table(compiled.nodes), Table(shared), bands
         )
 
-    def _fluorescent_scene_and_sensing(self, iteration, bands):
+    def fluorescent_scene_and_sensing(self, iteration, bands):
         """The same with several sets of wavelengths (theory 3.2)."""
         compiled, render = self.compiled, self.compiled.graph.render
         count, first = render.hero_count, compiled.wavelength_range[0]
@@ -116,7 +116,8 @@ class StochasticSampler:
             Spectrum(np.zeros(count)),
             fluorescence.matrix,
         )
-        return compiled.scene._replace(spectra=spectra, fluorescence=fluorescence), sensing
+        scene = compiled.scene._replace(excitation=None, reemission=None)
+        return scene._replace(spectra=spectra, fluorescence=fluorescence), sensing
 
     def add_to_film(self, iteration):
         """Add the image of the iteration to the film, in row order whatever the threads."""

@@ -31,6 +31,11 @@ def _at_offset(nodes, count, offset):
     return np.array([nodes[index] + (position - index) * width, width * entries / count])
 
 
+def tolerance_of(merging, iteration):
+    """How far apart wavelengths that are merged may be in an iteration, nm: d_n = d_0 n^-s."""
+    return merging.wavelength_tolerance * (iteration + 1.0) ** -merging.tolerance_exponent
+
+
 def mean_acceptance(nodes, count, tolerance, steps=4096):
     """Mean over an eye path's wavelengths of P_acc (theory 2.7; transport/rotation.py), in (0, 1].
 

@@ -18,11 +18,12 @@ from artist_py.scene.compile_fluorescence import (
     FluorescentScene,
     fluorescent_scene,
     fluoresces,
-    with_shared_wavelengths,
+    with_fluorescent_wavelengths,
 )
 from artist_py.scene.compile_geometry import GeometryCompiler, collect_parts, space_of
 from artist_py.scene.compile_lights import method_warnings
 from artist_py.scene.compile_materials import NEED_NAMES, MaterialCompiler, SpectrumRows
+from artist_py.scene.compile_shifting import shifts, with_shifting
 from artist_py.scene.compile_textures import check_coordinates
 from artist_py.transport.initial_media import media_at
 
@@ -66,6 +67,13 @@ class CompiledScene:
     reasons: dict = field(default_factory=dict)
     seconds: float = 0.0
 
+    @property
+    def has_sets(self):
+        """Whether paths have several sets of wavelengths: something fluoresces, and they do not shift instead."""
+        return (
+            self.fluorescence is not None and self.scene.excitation is None and self.scene.reemission is None
+        )
+
 
 def compile_scene(graph, threads=None):
     """Load, tabulate and build everything; raises `SceneError` with all problems that are found on the way."""
@@ -79,7 +87,7 @@ def compile_scene(graph, threads=None):
     geometry = GeometryCompiler(graph, parts, space, threads or len(os.sched_getaffinity(0)))
     is_fluorescent = fluoresces(graph, {placed.material for placed in geometry.placed})
     if is_fluorescent:
-        graph = with_shared_wavelengths(graph)
+        graph = with_fluorescent_wavelengths(graph)
     first, last = graph.render.wavelength_range or (EXTENDED if is_fluorescent else VISIBLE)
     spectra = SpectrumRows(first, last)
     observer = graph.film.observer
@@ -125,6 +133,8 @@ def compile_scene(graph, threads=None):
     if not emitters.light.any():
         geometry.warnings.append(f"nothing emits light from {first} to {last} nm: the image will be black")
     nodes = inverse_cdf(wavelength_density(sensor, emitters.light), first)
+    if is_fluorescent and shifts(graph.render):
+        scene, nodes = with_shifting(graph.render, scene, fluorescent, first), fluorescent.set_nodes[0]
     return CompiledScene(
         graph,
         scene,

@@ -6,8 +6,8 @@ import numpy as np
 
 from artist_py.errors import SceneError
 from artist_py.film.wavelengths import excitation_density, inverse_cdf, wavelength_density
+from artist_py.scene.compile_shifting import shifting_problem, shifts
 from artist_py.scene.graph import Fluorescent
-from artist_py.scene.messages import show
 from artist_py.scene.where import problem
 
 EVENTS = 3  # fluorescent events in a row that densities of wavelengths think of
@@ -36,16 +36,22 @@ def fluoresces(graph, used):
     return any(isinstance(graph.materials.get(name), Fluorescent) for name in used)
 
 
-def with_shared_wavelengths(graph):
-    """The graph of a scene that fluoresces with shared wavelengths; raises SceneError where others are asked for."""
+def with_fluorescent_wavelengths(graph):
+    """The graph of a scene that fluoresces, whose wavelengths are shared unless others are asked for.
+
+    Raises SceneError where these have no meaning.
+    """
     render = graph.render
-    if render.wavelengths != "shared" and _is_given(render, "wavelengths"):
-        message = f'expected "shared", since a material fluoresces, found {show(render.wavelengths)}'
-        raise SceneError([problem(render, "wavelengths", message)])
     if render.integrator == "reference":
         message = "the reference integrator knows no fluorescence, found a material that fluoresces"
         raise SceneError([problem(render, "integrator", message)])
-    return replace(graph, render=replace(render, wavelengths="shared"))
+    if not _is_given(render, "wavelengths"):
+        return replace(graph, render=replace(render, wavelengths="shared"))
+    if found := shifting_problem(render):
+        raise SceneError([problem(render, *found)])
+    if shifts(render):  # two densities of wavelengths: where eye and where light subpaths begin
+        return replace(graph, render=replace(render, wavelength_sets=2))
+    return graph
 
 
 def _is_given(node, key):

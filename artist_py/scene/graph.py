@@ -139,6 +139,9 @@ class Merging(Node):
         Choice(("none", "vcm+")), "none"
     )  # whether weights know that merges at one place share their photons
     wavelength_tolerance: float = key(Number(above=0), 5.0)  # nm, with wavelengths = "rotate"
+    tolerance_exponent: float = key(
+        Number(at_least=0, at_most=1), 0.0
+    )  # s: in iteration n it is that tolerance times n^-s
 
     def __post_init__(self):
         if self.radius is None and self.radius_pixels is None:

@@ -245,6 +245,22 @@ class Fluorescence(NamedTuple):
     matrix: object  # Spectrum of M C C lanes, with which eye subpaths start: 1 from each wavelength of set 0 to itself
 
 
+class Redistribution(NamedTuple):
+    """Where fluorescence leads to from each wavelength, a row per fluorescent material; bins of 1 nm."""
+
+    first: float  # nm, lower edge of bin 0
+    shares: Table  # float32 (rows, bins, bins): of all that is led on from a bin, what goes up to the end of another
+    totals: Table  # float32 (rows, bins): the sum of R over where it leads to
+
+
+class Reemission(NamedTuple):
+    """What light subpaths with wavelengths of their own need, see transport/shifting.py."""
+
+    emission: Redistribution  # from the wavelength of excitation
+    matrix: Table  # R(out, in), 1 / nm, float32 (rows, bins, bins)
+    nodes: Table  # float64 (n + 1,): where light subpaths begin, see core/wavelengths.py
+
+
 class Needs(NamedTuple):
     """What the scene needs: `True`, or `None` for what is left out of its kernels."""
 
@@ -325,3 +341,6 @@ class Scene(NamedTuple):
     textures: Textures | None
     needs: Needs
     fluorescence: Fluorescence | None = None  # of an iteration; absent where nothing fluoresces
+    # Instead, where every path has wavelengths of its own: from the wavelength of emission, for eye subpaths.
+    excitation: Redistribution | None = None
+    reemission: Reemission | None = None  # the same for light subpaths

@@ -15,6 +15,7 @@ from .photon_density import counts_around
 from .photon_grid import bucket_of, cell_of, is_in_pair
 from .recording import VM, record
 from .rotation import Rotation, is_rejected, throughput_in_line
+from .shifting import Matching, is_unmatched, of_power
 from .subpath import is_on_side
 
 
@@ -27,6 +28,7 @@ class Merging(NamedTuple):
     min_normal_cosine: float
     epanechnikov: bool | None  # K = 2 (1 - d^2 / r^2) / (pi r^2) instead of the constant kernel 1 / (pi r^2)
     rotation: Rotation | None = None  # absent where all subpaths of an iteration share their wavelengths
+    matching: Matching | None = None  # present where each photon has one wavelength of its own
 
 
 class Merged(NamedTuple):
@@ -49,6 +51,7 @@ def merge_at(scene, method, grid, merging, stored, survival, limits, tables, pla
     buckets = grid.starts.shape[0] - 1
     counts = counts_around(method.density, method.counts, p)
     scale = 1.0 / (merging.radius * merging.radius)
+    material = scene.materials[stored.vertex.surface.material]
     for corner in range(8):
         x, y, z = corner & 1, j + ((corner >> 1) & 1), k + (corner >> 2)
         bucket = bucket_of(i + x, y, z, buckets)
@@ -59,7 +62,11 @@ def merge_at(scene, method, grid, merging, stored, survival, limits, tables, pla
             photon = grid.photons[row]
             distance_squared = _distance_squared(photon, p) * scale
             # A photon counts in its own row only, since several of the four may share buckets.
-            if distance_squared <= 1.0 and is_in_pair(photon.position, i, y, z, grid.cell):
+            if (
+                distance_squared <= 1.0
+                and is_in_pair(photon.position, i, y, z, grid.cell)
+                and not is_unmatched(merging.matching, material, photon, wavelengths)
+            ):
                 length = photon.length + stored.length
                 throughput = throughput_in_line(window, photon, wavelengths)
                 if length <= limits.max_length and not is_rejected(window, throughput):
@@ -114,6 +121,7 @@ def _merge(scene, method, counts, merging, photon, throughput, stored, survival,
     if not is_on_side(scene.needs.smooth_triangles, vertex.surface, direction, wi):
         return MergedPhoton(black(wavelengths), 0.0)
     f = evaluate_bsdf(scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, vertex.wo, wi)
+    f = of_power(merging.matching, scene.reemission, material, photon, wavelengths, f)
     weight = _weight(
         method.techniques.merge_once, scene, counts, photon, stored, material, wi, pdf, survival, wavelengths
     )

@@ -105,24 +105,26 @@ def _of_hit(emitters, scene, surface, path, length, wavelengths):
 
 
 @function
-def radiance_of_background(scene, path, length, place, tables):
+def radiance_of_background(scene, path, length, place, wavelengths, tables):
     """Radiance that `path`, which leaves the scene, finds at infinity, with the MIS weight of having found it.
 
     That of each emitter is noted in the `TechniqueTables`, if there are any.
     """
-    return _of_background(scene.emitters, scene, path, length, place, tables)
+    return _of_background(scene.emitters, scene, path, length, place, wavelengths, tables)
 
 
 @function
-def _of_background(emitters, scene, path, length, place, tables):
+def _of_background(emitters, scene, path, length, place, wavelengths, tables):
     if emitters is None:
-        return black(place.wavelengths)
-    return _sum_of_background(emitters.background, emitters.records, scene, path, length, place, tables)
+        return black(wavelengths)
+    return _sum_of_background(
+        emitters.background, emitters.records, scene, path, length, place, wavelengths, tables
+    )
 
 
 @function
-def _sum_of_background(first, records, scene, path, length, place, tables):
-    total = black(place.wavelengths)
+def _sum_of_background(first, records, scene, path, length, place, wavelengths, tables):
+    total = black(wavelengths)
     if first is None:
         return total
     for i in range(first, records.shape[0]):
@@ -134,7 +136,7 @@ def _sum_of_background(first, records, scene, path, length, place, tables):
             if path.pdf_solid_angle > 0.0:
                 pdf_light = pdf_emitter(scene, emitter, path.reference, path.reference, -path.direction)
                 weight = balance(path.pdf_solid_angle, pdf_light)
-            radiance = emitted_radiance(scene, emitter, -path.direction, place.wavelengths) * weight
+            radiance = emitted_radiance(scene, emitter, -path.direction, wavelengths) * weight
             total = total + radiance
             contribution = received(scene.fluorescence, path.throughput, radiance)
             record(tables, scene.spectra, place, HIT, length, length, contribution, weight)

@@ -15,14 +15,20 @@ from ..core.table import Table
 from ..jit import function, kernel
 from .rotation import note_offset
 from .shares import is_chosen
+from .shifting import note_wavelength
 from .vertices import store3
 
 _U64 = np.uint64
 
 
-def photon_dtype(lanes, with_offset=False):
-    """Layout of a photon: what a merge reads, and no more; `with_offset` adds what tells its own wavelengths."""
+def photon_dtype(lanes, with_offset=False, with_wavelength=False):
+    """Layout of a photon: what a merge reads, and no more.
+
+    `with_offset` adds what tells its own wavelengths where these are heroes (rotation.py), `with_wavelength` where it
+    has one that shifts (shifting.py).
+    """
     own = [("offset", "f4"), ("pixel", "i4")] if with_offset else []
+    own += [("wavelength", "f4")] if with_wavelength else []
     return np.dtype(
         [
             ("position", "f4", 3),
@@ -87,11 +93,11 @@ def count_photons(grid, records, paths, share, materials, first, end):
 
 
 @kernel
-def place_photons(grid, records, paths, share, materials, first, end, before, offsets):
+def place_photons(grid, records, paths, share, materials, first, end, before, offsets, with_wavelength):
     """Turn the counts of buckets [first, end) into starts, and copy their photons; `before` lie in earlier buckets.
 
     While photons are placed `starts[b + 1]` is where the next one of b goes; in the end it is where b + 1 starts.
-    `offsets` are those of a `Rotation`, where there is one.
+    `offsets` are those of a `Rotation`, where there is one; `with_wavelength` is `True` where records have one.
     """
     buckets = grid.starts.shape[0] - 1
     position = before
@@ -111,6 +117,7 @@ def place_photons(grid, records, paths, share, materials, first, end, before, of
                 grid.starts[bucket + 1] = row + 1
                 _copy(record, grid.photons[row])
                 note_offset(offsets, path, grid.photons[row])
+                note_wavelength(with_wavelength, record, grid.photons[row])
 
 
 @function

@@ -59,11 +59,11 @@ def _window(rotation, nodes, wavelengths, pixel):
 
 
 @function
-def wavelengths_of_pixel(rotation, sensing, shared, pixel):
-    """`(wavelengths, weights)` of a pixel's subpaths: `shared`, unless they have their own."""
-    if rotation is None:
+def wavelengths_of_pixel(offsets, sensing, shared, pixel):
+    """`(wavelengths, weights)` of a pixel's eye subpath: `shared`, unless `offsets` say that it has its own."""
+    if offsets is None:
         return shared
-    return sample_wavelengths(sensing.nodes, sensing.zero, rotation.offsets[pixel])
+    return sample_wavelengths(sensing.nodes, sensing.zero, offsets[pixel])
 
 
 @function

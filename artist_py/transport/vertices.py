@@ -25,13 +25,15 @@ LARGEST = (
 NEXT_CHUNK, SHORTAGE = range(2)  # in Pool.state
 
 
-def vertex_dtype(lanes, with_shading=True, with_uv=True):
+def vertex_dtype(lanes, with_shading=True, with_uv=True, with_wavelength=False):
     """Layout of a stored vertex of a subpath with `lanes` wavelengths.
 
-    Shading normals are left out where all are geometric, surface coordinates where nothing has a texture.
+    Shading normals are left out where all are geometric, surface coordinates where nothing has a texture; a wavelength
+    is there where each subpath has its own (shifting.py).
     """
     shading = [("shading_normal", "f4", 3)] if with_shading else []
     uv = [("u", "f4"), ("v", "f4")] if with_uv else []
+    wavelength = [("wavelength", "f4")] if with_wavelength else []
     return np.dtype(
         [
             ("position", "f8", 3),
@@ -46,6 +48,7 @@ def vertex_dtype(lanes, with_shading=True, with_uv=True):
             ("pixel", "i4"),  # eye vertices: row-major in the window
             *shading,
             *uv,
+            *wavelength,
         ],
         align=True,
     )

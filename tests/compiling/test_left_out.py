@@ -29,6 +29,7 @@ ONLY = {
     "diffuse": ("core.warp", "square_to_cosine_hemisphere"),
     "fluorescence": ("bsdf.fluorescence", "reradiated"),
     "coated_dyes": ("bsdf.fluorescence", "_transmitted"),
+    "shifting": ("transport.shifting", "redistributed"),
 }
 
 SCRIPT = """
@@ -120,4 +121,6 @@ def test_the_second_process_compiles_nothing(reports):
 @pytest.mark.slow
 def test_what_a_scene_has_is_compiled(tmp_path):
     """The same functions are found where they are needed: the test above can fail."""
-    assert set(run(RICH, tmp_path)["found"]) == set(ONLY)
+    assert set(run(RICH, tmp_path)["found"]) == set(ONLY) - {"shifting"}
+    with_own = RICH.replace("render={", 'render={"wavelengths": "independent", ')
+    assert set(run(with_own, tmp_path)["found"]) == set(ONLY) - {"fluorescence"}

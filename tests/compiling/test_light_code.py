@@ -38,7 +38,7 @@ def use_everything(scene, path, wavelengths):
     density += emission_over_next_event(scene, emitter, point, point.position - path.origin, 1.0)
     radiance = emitted_radiance(scene, emitter, start.direction, wavelengths)
     place = Place(0, 0, wavelengths, wavelengths)
-    return density, radiance + radiance_of_background(scene, path, 1, place, None)
+    return density, radiance + radiance_of_background(scene, path, 1, place, wavelengths, None)
 
 
 def scene_with(emitters):

@@ -1,0 +1,190 @@
+"""Fluorescence by shifting wavelengths: each path has its own, and at a fluorescent event they change.
+
+So fluorescence was rendered before sets of wavelengths (bsdf/fluorescence.py) made it a matter of all wavelengths at
+once; here it is for comparison, and for scenes without it nothing of it is compiled.
+
+A path that arrives at a fluorescent surface is scattered either elastically or by a dye, by chance in proportion to
+what either would bring. Where a dye did it the wavelength is drawn anew: of an eye subpath, whose outgoing wavelength
+is known, that of the excitation, in proportion to R(out, in) over `in`; of a light subpath that of the emission, in
+proportion to R(out, in) over `out` (Mojzik et al. 2018; theory 3.1). Either way the surface then scatters like a
+diffuse one whose reflectance is the sum of both parts, and the walk goes on as always. Of the several wavelengths of
+an eye subpath each shifts for itself: directions do not depend on it.
+
+Light subpaths of different wavelengths meet eye subpaths by merges within a tolerance d. A photon is a power P at a
+wavelength l', and stands for a power per nm of P / w at all wavelengths l with |l - l'| <= d, where w is how much of
+the rendered range lies within d of l: a constant spectrum stays what it is, near the ends of the range too. What a dye
+makes of a photon needs no tolerance: R(l, l') is evaluated as it stands.
+"""
+
+from typing import NamedTuple
+
+from ..core.rng import random_number, random_pair
+from ..core.spectra import ONE_MINUS
+from ..core.vector import lane, lane_count, with_lane
+from ..core.warp import INV_PI
+from ..core.wavelengths import sample_wavelengths
+from ..jit import function
+from .subpath import Vertex
+
+WAVELENGTH = (
+    2  # the pair of random dimensions that places the path's wavelengths, and draws for its first vertex
+)
+SHIFT = 1 << 21  # single random numbers of later vertices, see core/rng.py
+INSIDE = 0.9999  # of a bin: what is drawn in it may be rounded to float32, and still lie in it
+
+
+class Matching(NamedTuple):
+    """Which photons an eye vertex accepts, by wavelength."""
+
+    tolerance: float  # d, nm
+    first: float  # nm, the ends of the rendered range
+    last: float
+
+
+# --- walks
+
+
+@function
+def shifted_back(excitation, material, vertex, wavelengths, stream, length):
+    """`(vertex, wavelengths)` of an eye subpath that is scattered at its vertex number `length`.
+
+    The reflectance of the vertex is then that of the wavelengths it is left with, at which light arrives.
+    """
+    if excitation is None:
+        return vertex, wavelengths
+    return _shifted(excitation, material, vertex, wavelengths, stream, length)
+
+
+@function
+def shifted_onwards(reemission, material, vertex, wavelengths, stream, length):
+    """The same of a light subpath: the wavelengths are those at which light leaves."""
+    if reemission is None:
+        return vertex, wavelengths
+    return _shifted(reemission.emission, material, vertex, wavelengths, stream, length)
+
+
+@function
+def _shifted(redistribution, material, vertex, wavelengths, stream, length):
+    if material.fluorescence < 0:
+        return vertex, wavelengths
+    u = random_number(stream, SHIFT + length) if length > 1 else random_pair(stream, WAVELENGTH)[1]
+    count, reflectance = lane_count(wavelengths), vertex.reflectance
+    for i in range(count):
+        # Evenly spread over the lanes, and uniformly distributed in each.
+        number = u + i / count
+        number -= 1.0 if number >= 1.0 else 0.0
+        wavelength, total = redistributed(
+            redistribution,
+            material.fluorescence,
+            float(lane(wavelengths, i)),
+            float(lane(reflectance, i)),
+            number,
+        )
+        wavelengths, reflectance = with_lane(wavelengths, i, wavelength), with_lane(reflectance, i, total)
+    return Vertex(vertex.surface, vertex.frame, vertex.wo, vertex.is_sampled_back, reflectance), wavelengths
+
+
+@function
+def redistributed(redistribution, row, wavelength, elastic, u):
+    """`(wavelength, total)`: where a wavelength (nm) is led to, and what is scattered in all, `elastic` included.
+
+    `u` is uniform in [0, 1): one number decides whether and where to.
+    """
+    own = _bin_of(redistribution, wavelength)
+    glow = float(redistribution.totals[row, own])
+    total = elastic + glow
+    if not u * total < glow:
+        return wavelength, total
+    u = min(u * total / glow, ONE_MINUS)
+    shares, reached = redistribution.shares, _first_above(redistribution.shares, row, own, u)
+    below = float(shares[row, own, reached - 1]) if reached > 0 else 0.0
+    fraction = (u - below) / (float(shares[row, own, reached]) - below)
+    return redistribution.first + reached + min(fraction, INSIDE), total
+
+
+@function
+def _bin_of(redistribution, wavelength):
+    return min(max(int(wavelength - redistribution.first), 0), redistribution.totals.shape[1] - 1)
+
+
+@function
+def _first_above(shares, row, own, u):
+    """The first of an increasing row of shares that is above `u`; the last one is 1."""
+    low, high = 0, shares.shape[2] - 1
+    while low < high:
+        middle = (low + high) // 2
+        if float(shares[row, own, middle]) > u:
+            high = middle
+        else:
+            low = middle + 1
+    return low
+
+
+# --- photons
+
+
+@function
+def wavelengths_of_light(reemission, wavelengths, stream):
+    """`(wavelengths, weights)` of a light subpath: those of its eye subpath and `None`, or its own and 1 / p, nm."""
+    if reemission is None:
+        return wavelengths, None
+    return sample_wavelengths(reemission.nodes, wavelengths, random_pair(stream, WAVELENGTH)[0])
+
+
+@function
+def as_power(weights, throughput):
+    """Throughput per nm as the power that the subpath's wavelengths stand for, where it has its own."""
+    if weights is None:
+        return throughput
+    return throughput * weights
+
+
+@function
+def keep_wavelength(reemission, pool, thread, wavelengths):
+    """Keep with the vertex that `thread` has just stored at which wavelength light arrives."""
+    if reemission is None:
+        return
+    pool.records[pool.ends[thread, 0] - 1].wavelength = lane(wavelengths, 0)
+
+
+@function
+def note_wavelength(with_wavelength, record, photon):
+    """Copy the wavelength of a stored vertex, where it has one of its own."""
+    if with_wavelength is None:
+        return
+    photon.wavelength = record.wavelength
+
+
+@function
+def is_unmatched(matching, material, photon, wavelengths):
+    """Whether a photon's wavelength rules it out."""
+    if matching is None:
+        return False
+    return material.fluorescence < 0 and not _is_within(matching, photon, float(lane(wavelengths, 0)))
+
+
+@function
+def _is_within(matching, photon, wavelength):
+    return abs(float(photon.wavelength) - wavelength) <= matching.tolerance
+
+
+@function
+def of_power(matching, reemission, material, photon, wavelengths, f):
+    """`f` for the photon's throughput: itself, or per nm where that is a power at a wavelength of its own."""
+    if matching is None:
+        return f
+    return _of_power(matching, reemission, material, photon, wavelengths, f)
+
+
+@function
+def _of_power(matching, reemission, material, photon, wavelengths, f):
+    wavelength, tolerance = float(lane(wavelengths, 0)), matching.tolerance
+    accepted = min(wavelength + tolerance, matching.last) - max(wavelength - tolerance, matching.first)
+    f = f * (1.0 / accepted if _is_within(matching, photon, wavelength) else 0.0)
+    if material.fluorescence < 0:
+        return f
+    out, into = (
+        _bin_of(reemission.emission, wavelength),
+        _bin_of(reemission.emission, float(photon.wavelength)),
+    )
+    return f + with_lane(f, 0, INV_PI * reemission.matrix[material.fluorescence, out, into])

@@ -17,6 +17,7 @@ BENCHMARKS = (
     "triangles",
     "samplers",
     "correlation",
+    "published",
     "findings",
 )
 

@@ -62,6 +62,7 @@ def test_one_wavelength():
     assert_path_tracing(4e-3, 400, hero_count=1)
 
 
+@pytest.mark.slow
 def test_dispersion():
     """A dispersive surface keeps one wavelength, which then shifts alone."""
     compiled = glass_room(integrator="pt", wavelengths="independent")

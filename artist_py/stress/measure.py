@@ -73,10 +73,10 @@ def scene_text(case, integrator, seed):
     """The scene file of a cell; its seed is that of the run and of the cell's name."""
     own = zlib.crc32(f"{case.name}/{integrator}".encode())
     render = {
+        "wavelengths": "shared" if integrator in {*MERGES, "reference"} else "independent",
         **case.scene["render"],
         "integrator": integrator,
         "seed": (own + seed) % 2**31,
-        "wavelengths": "shared" if integrator in {*MERGES, "reference"} else "independent",
     }
     return to_toml({**case.scene, "render": render})
 

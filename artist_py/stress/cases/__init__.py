@@ -2,6 +2,7 @@
 
 from artist_py.stress.cases import (
     camera,
+    fluorescence,
     geometry,
     glass,
     lights,
@@ -21,5 +22,6 @@ CASES = (
     *geometry.CASES,
     *camera.CASES,
     *spectra.CASES,
+    *fluorescence.CASES,
     *nothing.CASES,
 )

@@ -13,7 +13,7 @@ from ..transport.mis import eye_start
 from ..transport.recording import Place
 from ..transport.sensing import store_sample, wavelengths_of_path
 from ..transport.subpath import seen_from, start_path
-from ..transport.vertices import CHUNK, has_room
+from ..transport.vertices import has_room, rewind
 from .eye_subpath import trace_eye_subpath
 from .lens_hits import splats_per_vertex
 from .light_subpath import trace_light_subpath
@@ -54,15 +54,6 @@ def stores_have_room(setup, thread):
     eye = has_room(stores.eye, thread, length)
     splats = has_room(stores.splats, thread, n_light * splats_per_vertex(setup.method.counts.lens))
     return splats and light and eye
-
-
-@function
-def rewind(pool, merge, thread):
-    """Without merges nobody asks for the light vertices of earlier pixels: start the chunk again."""
-    if pool is None:
-        return
-    if merge is None:
-        pool.ends[thread, 0] = pool.ends[thread, 1] - CHUNK
 
 
 @function

@@ -18,7 +18,7 @@ from ..transport.connect import Connected, connect_to_light, connect_vertices, n
 from ..transport.local_counts import counts_at
 from ..transport.mis import on_arrival, partial_after, weight_of_hit
 from ..transport.recording import HIT, NEE, VC, record
-from ..transport.roulette import local_survival, survived
+from ..transport.roulette import is_spent, local_survival, survived
 from ..transport.shares import is_chosen
 from ..transport.subpath import go_straight, is_passed_through, scatter, vertex_at
 from ..transport.vertices import load_vertex, store_vertex
@@ -87,7 +87,7 @@ def trace_eye_subpath(  # noqa: PLR0915 - one loop, a line or two per step of th
         # Not the material but the lobe counts: one of a plastic's two can neither be connected nor merged.
         is_specular = is_specular and is_unmergeable(scene, material, step)
         begins_specular = begins_specular and (length > 1 or step.is_delta)
-        if step.path.is_absorbed or is_done(method, is_specular, begins_specular):
+        if is_spent(limits.ends_black, step.path) or is_done(method, is_specular, begins_specular):
             break
         partial = partial_after(counts, partial, step, surface, survival, cos_in)
         path = survived(step.path, survival)

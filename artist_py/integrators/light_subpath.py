@@ -19,7 +19,7 @@ from ..transport.connect import connect_to_camera
 from ..transport.local_counts import counts_at
 from ..transport.mis import Partial, on_arrival, partial_after
 from ..transport.recording import LT
-from ..transport.roulette import local_survival, survived
+from ..transport.roulette import brings_nothing, is_spent, local_survival, survived
 from ..transport.shares import is_chosen, is_vertex_wanted
 from ..transport.shifting import as_power, keep_wavelength, shifted_onwards, wavelengths_of_light
 from ..transport.splats import choose_pixel, store_splat
@@ -70,6 +70,8 @@ def _trace(needed, emitters, setup, thread, index, pixel, stream, wavelengths):
     wavelengths, weights = wavelengths_of_light(setup.scene.reemission, wavelengths, stream)
     radiance = emitted_radiance(setup.scene, emitter, start.direction, wavelengths)
     throughput = as_power(weights, radiance * (start.cos_theta / start.density))
+    if brings_nothing(setup.limits.ends_black, throughput):
+        return Walk(black(wavelengths), 0, 0)
     origin = offset_position(start.position, start.normal, start.extent, start.direction)
     path = Path(
         origin, start.direction, throughput, 0.0, start.position, 1.0, setup.sensing.ratio, emitter.media, False
@@ -118,7 +120,7 @@ def _walk(  # noqa: C901 - one loop, a line or two per step of the walk
             break
         _, u_lobe = random_pair(stream, pair + CHOICE)
         step = scatter(scene, vertex, path, wavelengths, stream, pair + BSDF, u_lobe, True)
-        if step.path.is_absorbed:
+        if is_spent(limits.ends_black, step.path):
             break
         partial = partial_after(here, partial, step, surface, survival, cos_in)
         path = survived(step.path, survival)

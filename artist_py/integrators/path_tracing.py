@@ -18,7 +18,7 @@ from ..jit import function, kernel
 from ..scene.tables import ABSORBER, Camera, Filter, Scene
 from ..transport.next_event import connect_to_emitter, radiance_of_background, radiance_of_hit
 from ..transport.recording import HIT, NEE, Place, TechniqueTables, record
-from ..transport.roulette import Limits, after_roulette, is_ended_by_roulette
+from ..transport.roulette import Limits, after_roulette, is_ended_by_roulette, is_spent
 from ..transport.sensing import Sensing, store_sample, wavelengths_of_path
 from ..transport.shifting import shifted_back
 from ..transport.subpath import go_straight, is_passed_through, scatter, start_path, vertex_at
@@ -166,7 +166,9 @@ def path_radiance(scene, limits, sensing, stream, origin, direction, media, plac
             shadow_rays += direct.rays
         path = scatter(scene, vertex, path, wavelengths, stream, pair + BSDF, u_lobe, None).path
         length += 1
-        if path.is_absorbed or is_ended_by_roulette(scene.fluorescence, limits, stream, length, path):
+        if is_spent(limits.ends_black, path):
+            break
+        if is_ended_by_roulette(scene.fluorescence, limits, stream, length, path):
             break
         path = after_roulette(scene.fluorescence, limits, length, path)
     return Traced(radiance, rays, shadow_rays)

@@ -4,7 +4,7 @@ from ..core.rng import stream_of
 from ..jit import function, kernel
 from ..transport.photon_density import deposit
 from ..transport.sensing import wavelengths_of_path
-from ..transport.vertices import CHUNK
+from ..transport.vertices import rewind
 from .light_subpath import trace_light_subpath
 from .pair import LIGHT_SEED
 from .path_tracing import WAVELENGTH
@@ -19,7 +19,7 @@ def count_pilot_photons(setup, density, thread, first, end):
     for index in range(first, end):
         stream = stream_of(work.seed ^ LIGHT_SEED ^ PILOT_SEED, 0, index, 0)
         wavelengths, _ = wavelengths_of_path(setup.sensing, stream, WAVELENGTH)
-        stores.light.ends[thread, 0] = stores.light.ends[thread, 1] - CHUNK
+        rewind(stores.light, None, thread)
         trace_light_subpath(setup, thread, thread, 0, stream, wavelengths)
         _count(density, stores.light.records, stores.paths[thread])
 

@@ -120,7 +120,7 @@ class BackwardsSampler(StochasticSampler):
         return self._pool_of(np.empty(chunks * CHUNK, dtype))
 
     def _pool_of(self, records):
-        ends = Table(np.zeros((self.threads, 2), np.int64))
+        ends = Table(np.zeros((self.threads, 3), np.int64))
         used = Table(np.zeros(len(records) // CHUNK, np.int32))
         needs = self.compiled.scene.needs
         state = Table(np.zeros(2, np.int64))

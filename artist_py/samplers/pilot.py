@@ -41,14 +41,18 @@ class Pilot:
         ]
 
     def _setup(self, sampler):
-        """What light subpaths need, and nothing but their vertices; the wavelengths are those of iteration 0."""
+        """What light subpaths need, and nothing but their vertices.
+
+        The wavelengths are those of iteration 0, and paths that are black at them count as well: others will not be.
+        """
         compiled, threads = sampler.compiled, self.threads
         scene, sensing = sampler.scene_and_sensing(0, None)
         method = method_of("bpm", sampler.n_pixels, 1.0, 0.0, 1.0)
         nothing = Techniques(*[None] * len(Techniques._fields))
         method = method._replace(techniques=nothing._replace(light_paths=True))
         work = Pass(sampler.seed, 0, 0, sampler.crop, sampler.width, Table(np.zeros(4, np.int64)))
-        ends = CHUNK * np.stack([np.arange(threads), np.arange(1, threads + 1)], axis=1)
+        first = CHUNK * np.arange(threads)
+        ends = np.stack([first, first + CHUNK, first], axis=1)
         pool = Pool(
             Table(np.empty(threads * CHUNK, stored_vertex_dtype(compiled, sampler.lanes))),
             Table(np.zeros(2, np.int64)),
@@ -59,6 +63,5 @@ class Pilot:
         )
         paths, resume = Table(np.zeros(threads, path_dtype)), Table(np.zeros((threads, 2), np.int64))
         stores = Stores(pool, None, None, paths, resume, None)
-        return Setup(
-            scene, compiled.camera, compiled.pixel_filter, sensing, sampler.limits, work, method, stores
-        )
+        limits = sampler.limits._replace(ends_black=None)
+        return Setup(scene, compiled.camera, compiled.pixel_filter, sensing, limits, work, method, stores)

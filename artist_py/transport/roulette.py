@@ -1,10 +1,11 @@
-"""Ending paths: by length, and by Russian roulette (Arvo and Kirk 1990)."""
+"""Ending paths: by length, where they are black, and by Russian roulette (Arvo and Kirk 1990)."""
 
 from typing import NamedTuple
 
 from ..bsdf.dispatch import survival_bsdf
 from ..bsdf.fluorescence import brightness
 from ..core.rng import random_number
+from ..core.vector import lane_sum
 from ..jit import function
 from .subpath import Path, with_throughput
 
@@ -14,6 +15,24 @@ class Limits(NamedTuple):
 
     max_length: int
     roulette_length: int  # longer paths may be ended by Russian roulette
+    ends_black: bool | None = True  # absent where a path also stands for other wavelengths than its own
+
+
+@function
+def brings_nothing(ends_black, throughput):
+    """Whether a path ends since it brings nothing at any of its wavelengths, nor will further along.
+
+    A sum and not the largest lane, which passes over what is no number: that has to be found, and is not black.
+    """
+    if ends_black is None:
+        return False
+    return lane_sum(throughput) == 0.0
+
+
+@function
+def is_spent(ends_black, path):
+    """Whether nothing is left of a path that has been scattered."""
+    return path.is_absorbed or brings_nothing(ends_black, path.throughput)
 
 
 @function

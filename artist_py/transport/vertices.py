@@ -1,8 +1,9 @@
 """Vertices that outlive their subpath: where they are stored, and how they are read again.
 
-Records come from one pool. Threads take it chunk by chunk; a path whose vertices might not fit is not begun, the pool
-is enlarged and the path traced then, so that no vertex is ever dropped. Which chunk a path lies in depends on threads,
-the order of paths does not: whoever reads the pool goes by path.
+Records come from one pool. Threads take it chunk by chunk, or as many chunks in a row as one pixel may fill; a path
+whose vertices might not fit is not begun, the pool is enlarged and the path traced then, so that no vertex is ever
+dropped. Which chunk a path lies in depends on threads, the order of paths does not: whoever reads the pool goes by
+path.
 """
 
 from typing import NamedTuple
@@ -18,7 +19,7 @@ from ..jit import function
 from .mis import Partial
 from .subpath import Vertex, vertex_on
 
-CHUNK = 4096  # records that a thread takes at a time
+CHUNK = 4096  # records; threads take whole numbers of chunks
 LARGEST = (
     1e36  # of C and E, whose float32 must not become infinite: infinity times a density of 0 is no number
 )
@@ -59,7 +60,7 @@ class Pool(NamedTuple):
 
     records: Table  # vertex_dtype, a multiple of CHUNK rows
     state: Table  # int64: next free chunk, whether records have run short
-    ends: Table  # int64 (threads, 2): next free record and end of each thread's chunk
+    ends: Table  # int64 (threads, 3): each thread's next free record, and end and first record of its chunks
     used: Table  # int32 (chunks,): how many records of each chunk hold something
     shading: bool | None = True  # what records have, see `vertex_dtype`
     uv: bool | None = True
@@ -67,19 +68,33 @@ class Pool(NamedTuple):
 
 @function
 def has_room(pool, thread, count):
-    """Whether `thread` may store `count` <= CHUNK records in a row; takes a new chunk where its own is too full."""
+    """Whether `thread` may store `count` records in a row; takes new chunks where its own are too full.
+
+    All threads ask for the same `count` of a pool, so that one that finds too few chunks is not overtaken by another.
+    """
     if pool is None:
         return True
     if pool.ends[thread, 0] + count <= pool.ends[thread, 1]:
         return True
-    chunk = fetch_and_add(pool.state, NEXT_CHUNK, 1)
-    if (chunk + 1) * CHUNK > pool.records.shape[0]:
-        fetch_and_add(pool.state, NEXT_CHUNK, -1)
+    chunks = (count + CHUNK - 1) // CHUNK
+    chunk = fetch_and_add(pool.state, NEXT_CHUNK, chunks)
+    if (chunk + chunks) * CHUNK > pool.records.shape[0]:
+        fetch_and_add(pool.state, NEXT_CHUNK, -chunks)
         pool.state[SHORTAGE] = 1
         return False
     pool.ends[thread, 0] = chunk * CHUNK
-    pool.ends[thread, 1] = (chunk + 1) * CHUNK
+    pool.ends[thread, 1] = (chunk + chunks) * CHUNK
+    pool.ends[thread, 2] = chunk * CHUNK
     return True
+
+
+@function
+def rewind(pool, merge, thread):
+    """Without merges nobody asks for the light vertices of earlier pixels: start the thread's chunks again."""
+    if pool is None:
+        return
+    if merge is None:
+        pool.ends[thread, 0] = pool.ends[thread, 2]
 
 
 @function

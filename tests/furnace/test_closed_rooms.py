@@ -6,6 +6,8 @@ Fixed seeds; a correct program fails one comparison by chance with probability 1
 import pytest
 from rendering import assert_uniform, diffuse, look, radiance, scene, shape
 
+import artist_py
+
 BOX = shape("box", "wall", min=[-1, -1.5, -0.7], max=[1, 1, 1.3], reverse=True, emission=1)
 SPHERE = shape("sphere", "wall", center=[0.2, 0, 0.1], radius=1.3, reverse=True, emission=1)
 ROOMS = {"box": BOX, "sphere": SPHERE}
@@ -66,3 +68,10 @@ def test_stratified_numbers(sampler):
     """Sobol points have the same expectation."""
     compiled = room(BOX, 0.6, max_path_length=80, sampler=sampler)
     assert_uniform(radiance(compiled, 128), 2.5, 3e-3)
+
+
+def test_black_walls_end_paths():
+    """One ray per path, though roulette is put off: what brings nothing is not followed."""
+    compiled = room(BOX, 0.0, max_path_length=400, roulette_length=NO_ROULETTE)
+    result = artist_py.render(compiled, iterations=2, threads=1)
+    assert result.statistics["rays"] == 2 * 16 * 16

@@ -15,23 +15,31 @@ from artist_py.integrators.pair import light_paths_of
 from artist_py.samplers.backwards import BackwardsSampler, radius_of
 from artist_py.samplers.memory import light_paths_within, memory_estimate
 from artist_py.samplers.render_job import RenderSettings
+from artist_py.samplers.wavelengths import shared_wavelengths
 from artist_py.scene import tables
 from artist_py.transport.splats import PROFILE_STEPS, choose_pixel
 from artist_py.transport.vertices import CHUNK
 
 
-@pytest.fixture(scope="module")
-def compiled():
+def room(reflectance, lamp, emission, resolution, **render):
+    """A box with a rectangle of light: all of them have the same kernels."""
     return scene(
         [
             shape("box", "white", min=[-1, -1, -1], max=[1, 1, 1], reverse=True),
-            shape("rectangle", corner=[-0.4, -0.4, 0.98], edges=[[0, 0.8, 0], [0.8, 0, 0]], emission=8),
+            shape(
+                "rectangle", corner=[-0.4, -0.4, 0.98], edges=[[0, lamp, 0], [lamp, 0, 0]], emission=emission
+            ),
         ],
-        materials={"white": {"type": "diffuse", "reflectance": 0.7}},
+        materials={"white": {"type": "diffuse", "reflectance": reflectance}},
         camera=look([0, -0.9, 0], [0, 1, -0.2], 70),
-        film={"resolution": [70, 45]},
-        render={"integrator": "vcm", "max_path_length": 6},
+        film={"resolution": resolution},
+        render={"integrator": "vcm", "max_path_length": 6, **render},
     )
+
+
+@pytest.fixture(scope="module")
+def compiled():
+    return room(0.7, 0.8, 8, [70, 45])
 
 
 def rgb(compiled, threads, iterations=2):
@@ -63,6 +71,36 @@ def test_stores_that_run_short_grow_and_lose_nothing(compiled):
 def sampler_of(compiled, light_paths=1.0):
     width, height = compiled.graph.film.resolution
     return BackwardsSampler(compiled, Film(height, width), 2, light_paths)
+
+
+def test_a_pixel_may_store_more_than_a_chunk():
+    """64 light subpaths of a hundred edges each: every record is where its subpath has put it."""
+    with sampler_of(room(1.0, 0.02, 8, [3, 1], max_path_length=101), 64.0) as sampler:
+        sampler.iterate(0)
+        paths, records = sampler.paths.array, sampler.light.records.array
+        numbers = [
+            np.arange(path["first_vertex"], path["first_vertex"] + path["n_vertices"]) for path in paths
+        ]
+        assert max(sum(map(len, numbers[64 * i : 64 * (i + 1)])) for i in range(3)) > CHUNK
+        for index, rows in enumerate(numbers):
+            assert (records["pixel"][rows] == index).all()
+            assert np.array_equal(records["length"][rows], np.arange(1, len(rows) + 1))
+
+
+def test_light_subpaths_that_are_black_at_their_wavelengths_are_not_traced():
+    """A line that the wavelengths of these iterations miss, and one that they do not."""
+    wavelengths = {"wavelength_range": [300, 780], "sampler": "independent"}
+    line = {"spectrum": {"lines": [[301.5, 1.0]], "width": 1.0}}
+    dark, lit = (room(0.7, 0.8, emission, [8, 8], **wavelengths) for emission in (line, 1.0))
+    for iteration in range(4):
+        nm = shared_wavelengths(dark.nodes, dark.graph.render.hero_count, dark.graph.render.seed, iteration)
+        assert (np.abs(nm[0] - 301.5) > 0.5).all()
+    for compiled, is_dark in ((dark, True), (lit, False)):
+        with sampler_of(compiled) as sampler:
+            for iteration in range(4):
+                sampler.iterate(iteration)
+            assert (sampler.counts["light_vertices"] == 0) is is_dark
+            assert sampler.counts["eye_vertices"] > 0
 
 
 @pytest.mark.parametrize("light_paths", [0.25, 0.5, 1.0, 1.7, 4.0])

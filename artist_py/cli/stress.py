@@ -13,6 +13,7 @@ FILE_WIDTH = 220  # columns of the table where the output is no terminal
 
 
 @click.command()
+@click.argument("scenes", metavar="[SCENE]...", nargs=-1, type=click.Path())
 @click.option("--quick", "extent", flag_value="quick", default=True, help="What takes minutes; the default.")
 @click.option(
     "--full", "extent", flag_value="full", help="All cases: also 1e7 triangles, and 1e5 points of light."
@@ -34,16 +35,19 @@ FILE_WIDTH = 220  # columns of the table where the output is no terminal
 @click.option(
     "--list", "only_list", is_flag=True, help="Print the cases and what they show, and run nothing."
 )
-def command(extent, only, integrators, output, seed, threads, only_list):
-    """Render extreme scenes with all integrators.
+def command(scenes, extent, only, integrators, output, seed, threads, only_list):
+    """Render extreme scenes, or each SCENE, with all integrators.
 
     Tiny lamps, huge scales, odd glass, degenerate triangles and the like: each must give the right picture or a
     clear message. Images are compared with closed forms, or with another integrator, by Z-tests: a correct program
     fails a run by chance with probability 0.001. The exit code is 1 if anything is wrong.
+
+    A SCENE of your own is rendered in 16 pixels and compared with vcm: what an integrator cannot find in it, and what
+    it is too noisy for, is reported as such.
     """
     if output and not output.endswith(".html"):
         raise OptionError(f"--output: {output}: expected a name that ends in .html")
-    cases = _chosen(extent, only)
+    cases = _chosen(scenes, extent, only)
     _check_integrators(integrators)
     if only_list:
         for case in cases:
@@ -52,9 +56,13 @@ def command(extent, only, integrators, output, seed, threads, only_list):
     return _run(cases, integrators, output, seed, threads)
 
 
-def _chosen(extent, only):
+def _chosen(scenes, extent, only):
     from artist_py.stress.cases import CASES
+    from artist_py.stress.own import own_case
 
+    own = [own_case(scene) for scene in scenes]
+    if own and not only:
+        return own
     chosen = set()
     for name in only:
         # A whole name is itself alone, though it may be part of others.
@@ -65,7 +73,7 @@ def _chosen(extent, only):
             raise OptionError(f"--only: no case has {name} in its name; --list --full shows all")
         chosen.update(found)
     if only:
-        return [case for case in CASES if case.name in chosen]
+        return own + [case for case in CASES if case.name in chosen]
     return [case for case in CASES if case.quick or extent == "full"]
 
 

@@ -1,6 +1,7 @@
 """What a stress case is: a scene, what must come out of it, and which integrators can render it."""
 
 from dataclasses import dataclass, field
+from pathlib import Path
 
 INTEGRATORS = ("pt", "lt", "bpt", "ppm", "bpm", "vcm", "reference")
 ALL = INTEGRATORS[:-1]
@@ -57,7 +58,7 @@ class Case:
 
     name: str
     shows: str  # what can go wrong here, in one sentence
-    scene: dict  # the tables of a scene file, as `scenes.py` makes them
+    scene: dict | Path  # the tables of a scene file, as `scenes.py` makes them, or a file
     expect: Radiance | SameAs | Sane | Refusal
     integrators: tuple = ALL
     left_out: dict = field(default_factory=dict)  # integrator: why it cannot render this

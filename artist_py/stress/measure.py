@@ -6,6 +6,7 @@ import sys
 import time
 import zlib
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from artist_py.samplers.render_job import RenderSettings, Silence, sampler_for
 from artist_py.scene.compile import compile_scene
 from artist_py.scene.reader import read_scene_text
 from artist_py.stress.case import MERGES, Refusal
+from artist_py.stress.own import small_scene
 from artist_py.stress.toml import to_toml
 
 BATCHES = 32
@@ -52,13 +54,12 @@ class Measurement:
 def measure(case, integrator, seed, folder, threads, started=lambda: None):
     """The `Measurement` of a cell; `started()` is called when its kernels are there."""
     begun = time.monotonic()
-    text = scene_text(case, integrator, seed)
     for name, write, arguments in case.files:
         if not (folder / name).exists():
             write(folder / name, *arguments)
     if isinstance(case.expect, Refusal):
-        return refused(text, folder, begun, case.seconds)
-    compiled = compile_scene(read_scene_text(text, str(folder / "scene.toml")), threads)
+        return refused(scene_text(case, integrator, seed), folder, begun, case.seconds)
+    compiled = compile_scene(graph_of(case, integrator, seed, folder), threads)
     result = Measurement(warnings=tuple(compiled.warnings))
     pilot = _run(compiled, PILOT, PILOT, threads, result, started, stream=1)
     started()
@@ -69,14 +70,25 @@ def measure(case, integrator, seed, folder, threads, started=lambda: None):
     return result
 
 
+def graph_of(case, integrator, seed, folder):
+    """The scene of a cell, its tables or its file."""
+    if isinstance(case.scene, Path):
+        return small_scene(case.scene, integrator, seed_of(case, integrator, seed))
+    return read_scene_text(scene_text(case, integrator, seed), str(folder / "scene.toml"))
+
+
+def seed_of(case, integrator, seed):
+    """The seed of a cell: that of the run, and its own."""
+    return (zlib.crc32(f"{case.name}/{integrator}".encode()) + seed) % 2**31
+
+
 def scene_text(case, integrator, seed):
-    """The scene file of a cell; its seed is that of the run and of the cell's name."""
-    own = zlib.crc32(f"{case.name}/{integrator}".encode())
+    """The scene file of a cell."""
     render = {
         "wavelengths": "shared" if integrator in {*MERGES, "reference"} else "independent",
         **case.scene["render"],
         "integrator": integrator,
-        "seed": (own + seed) % 2**31,
+        "seed": seed_of(case, integrator, seed),
     }
     return to_toml({**case.scene, "render": render})
 

@@ -14,7 +14,8 @@ from artist_py.errors import SceneError
 from artist_py.scene.reader import read_scene_text
 from artist_py.stress import cases, runner
 from artist_py.stress.case import ALL, Case, Radiance, Refusal
-from artist_py.stress.measure import scene_text
+from artist_py.stress.measure import graph_of, scene_text
+from artist_py.stress.own import own_case
 from artist_py.stress.scenes import furnace
 
 # As tests/furnace/test_closed_rooms.py has them, so that they share their kernels.
@@ -96,6 +97,31 @@ def test_a_scene_that_is_refused_but_should_not_be(run):
 def test_bad_options(options, message, capsys):
     assert main(["stress", *options]) == 2
     assert message in capsys.readouterr().err
+
+
+def test_scenes_of_files(capsys, tmp_path):
+    """They are cases of their own, and bad ones are refused as by every other command."""
+    scene = tmp_path / "own.toml"
+    scene.write_text(scene_text(RIGHT, "vcm", 1))
+    assert main(["stress", str(scene), "--list"]) == 0
+    assert capsys.readouterr().out == f"{scene}: A scene of your own, in few pixels. Expected: as vcm.\n"
+    scene.write_text(scene_text(dataclasses.replace(RIGHT, scene=furnace(albedo=2)), "vcm", 1))
+    assert main(["stress", str(scene)]) == 2
+    assert "own.toml" in capsys.readouterr().err
+
+
+def test_own_scenes_are_rendered_small(tmp_path):
+    """In their own shape; photon mapping gets more photons."""
+    scene = tmp_path / "own.toml"
+    film = {"resolution": [640, 400], "crop": [600, 640, 0, 9]}
+    scene.write_text(scene_text(dataclasses.replace(RIGHT, scene=furnace(film=film)), "vcm", 1))
+    case = own_case(scene)
+    pt, ppm = (graph_of(case, integrator, 1, tmp_path) for integrator in ("pt", "ppm"))
+    assert pt.film.resolution == ppm.film.resolution == (16, 10)
+    assert pt.film.crop == (0, 16, 0, 10)
+    assert (pt.render.integrator, ppm.render.integrator) == ("pt", "ppm")
+    assert pt.render.seed != ppm.render.seed
+    assert (pt.render.merging.light_paths, ppm.render.merging.light_paths) == (4, 64)
 
 
 def test_list(capsys):

@@ -119,6 +119,7 @@ CASES = (
         Radiance(LONG_VALUE),
         integrators=("pt", "lt", "ppm", "bpm"),
         precision=0.03,
+        least=256,
         rounding=1e-4,
         why="A thousand times the rounding of the albedo to float32.",
     ),

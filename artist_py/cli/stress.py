@@ -5,6 +5,7 @@ import time
 
 import click
 
+from artist_py.cli.interrupt import INTERRUPTED
 from artist_py.errors import OptionError, OutputError
 
 STYLES = {"ok": "green", "too noisy": "yellow"}  # whatever else is wrong is red
@@ -40,7 +41,8 @@ def command(scenes, extent, only, integrators, output, seed, threads, only_list)
 
     Tiny lamps, huge scales, odd glass, degenerate triangles and the like: each must give the right picture or a
     clear message. Images are compared with closed forms, or with another integrator, by Z-tests: a correct program
-    fails a run by chance with probability 0.001. The exit code is 1 if anything is wrong.
+    fails a run by chance with probability 0.001. The exit code is 1 if anything is wrong. Ctrl-C ends the run and
+    reports what has been rendered.
 
     A SCENE of your own is rendered in 16 pixels and compared with vcm: what an integrator cannot find in it, and what
     it is too noisy for, is reported as such.
@@ -93,14 +95,18 @@ def _run(cases, integrators, output, seed, threads):
 
     begun = time.monotonic()
     matrix = Matrix(cases, integrators or None)
-    for cell in run_cells(cases, seed, threads, integrators or None):
-        matrix.add(cell)
-        click.echo(f"{cell.case.name}, {cell.integrator}: {_in_words(matrix, cell)}", err=True)
+    code = None
+    try:
+        for cell in run_cells(cases, seed, threads, integrators or None):
+            matrix.add(cell)
+            click.echo(f"{cell.case.name}, {cell.integrator}: {_in_words(matrix, cell)}", err=True)
+    except KeyboardInterrupt:
+        code = INTERRUPTED
     seconds = time.monotonic() - begun
     _print(matrix, seconds)
     if output:
         _write(matrix, seconds, output)
-    return 0 if matrix.is_ok else WRONG
+    return code or (0 if matrix.is_ok else WRONG)
 
 
 def _in_words(matrix, cell):

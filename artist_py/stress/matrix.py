@@ -14,8 +14,8 @@ class Matrix:
         }
         self.integrators = [name for name in INTEGRATORS if name in present]
         self.cells = {}
-        count = sum(name in self.integrators for case in cases for name in case.integrators)
-        self.chance = chance_per_comparison(count)
+        self.count = sum(name in self.integrators for case in cases for name in case.integrators)
+        self.chance = chance_per_comparison(self.count)
 
     def add(self, cell):
         """Note a `Cell`."""
@@ -35,7 +35,7 @@ class Matrix:
         """`(status, text)` of a cell of the table; the text gives standard errors and seconds."""
         cell = self.cells.get((case.name, integrator))
         if cell is None:
-            return "left out", "-"
+            return ("not run", "not run") if integrator in case.integrators else ("left out", "-")
         verdict = self.verdict(cell)
         figures = "" if verdict.z is None else f" {verdict.z:.1f} se"
         seconds = "" if cell.found is None else f" {cell.found.seconds:.1f} s"
@@ -56,4 +56,5 @@ class Matrix:
         """One line."""
         count, wrong = len(self.cells), len(self.faults())
         found = f"{wrong} of {count} cells are wrong" if wrong else f"all {count} cells are right"
-        return f"{found}; a correct program fails such a run with probability {FALSE_ALARM:g}"
+        rest = f", {self.count - count} were not run" if count < self.count else ""
+        return f"{found}{rest}; a correct program fails such a run with probability {FALSE_ALARM:g}"

@@ -72,7 +72,8 @@ def _row(matrix, case):
 def _cell(matrix, case, integrator):
     cell = matrix.cells.get((case.name, integrator))
     if cell is None:
-        return f'<td class="cell out" title="{escape(case.left_out.get(integrator, ""), quote=True)}">left out</td>'
+        status, _ = matrix.text(case, integrator)
+        return f'<td class="cell out" title="{escape(case.left_out.get(integrator, ""), quote=True)}">{status}</td>'
     verdict = matrix.verdict(cell)
     kind = {"ok": "ok", "too noisy": "noisy"}.get(verdict.status, "wrong")
     lines = [escape(verdict.status)]

@@ -7,6 +7,7 @@ import dataclasses
 import re
 
 import faults
+import numpy as np
 import pytest
 
 from artist_py.cli.main import main
@@ -14,7 +15,7 @@ from artist_py.errors import SceneError
 from artist_py.scene.reader import read_scene_text
 from artist_py.stress import cases, runner
 from artist_py.stress.case import ALL, Case, Radiance, Refusal
-from artist_py.stress.measure import graph_of, scene_text
+from artist_py.stress.measure import BATCHES, Measurement, graph_of, scene_text
 from artist_py.stress.own import own_case
 from artist_py.stress.scenes import furnace
 
@@ -56,6 +57,21 @@ def test_right_and_wrong(run, tmp_path):
     assert html.count("data:image/png;base64,") == 2
     assert "too-bright" in html
     assert not re.search(r'(src|href)="(?!data:)', html)
+
+
+def test_an_interrupted_run_reports_what_it_has(run, tmp_path, monkeypatch):
+    page = tmp_path / "report.html"
+
+    def one_cell(chosen, *_):
+        yield runner.Cell(chosen[0], "pt", Measurement(means=np.ones((BATCHES, 5))))
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(runner, "run_cells", one_cell)
+    code, out = run(RIGHT, dataclasses.replace(RIGHT, name="other"), options=["-o", str(page)])
+    assert code == 130
+    assert re.search(r"right .* ok .*\n.*other .* not run", out)
+    assert "all 1 cells are right, 1 were not run" in out
+    assert "not run</td>" in page.read_text(encoding="utf-8")
 
 
 def test_all_right(run):

@@ -32,7 +32,9 @@ def render_aovs(compiled, sampler, settings, observer):
         if sample == 0:
             sampler.compile_calls([(trace_first_hits, arguments)], observer)
         sampler.run([(trace_first_hits, arguments)] * sampler.threads)
-    return {name: values for name, values in _finished(compiled, hits).items() if name in settings.aovs}
+    return {
+        name: values for name, values in _finished(compiled, hits).items() if name in settings.first_hit_aovs
+    }
 
 
 def _scene_and_sensing(compiled, sampler, sample):

@@ -66,7 +66,7 @@ def memory_estimate(compiled, settings):
     return {
         "film": pixels * (12 + 24 + 12 + (24 if "variance" in settings.aovs else 0) + 12 * bands),
         "techniques": pixels * _bytes_of_techniques(compiled, settings),
-        "auxiliary outputs": pixels * 60 if set(settings.aovs) - {"variance"} else 0,
+        "auxiliary outputs": pixels * 60 if settings.first_hit_aovs else 0,
         "geometry": sum(array.nbytes for array in arrays) + (emitters.records.nbytes if emitters else 0),
         "acceleration structure": BYTES_PER_FACE * faces,
         "spectra": compiled.spectra.nbytes

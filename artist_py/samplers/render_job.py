@@ -35,6 +35,11 @@ class RenderSettings:
     technique_length: int = LONGEST  # longer paths share an image per kind of technique
     compile_apart: bool = False  # large images: compile in another process, whose memory is given back
 
+    @property
+    def first_hit_aovs(self):
+        """The auxiliary outputs that tell of what paths meet first: all but the variance."""
+        return tuple(name for name in self.aovs if name != "variance")
+
 
 @dataclass(frozen=True)
 class RenderResult:
@@ -81,7 +86,7 @@ def render(compiled, settings, observer=None, stop=None):
         interrupted = _iterate(run, sampler, film)
         seconds = time.monotonic() - run.begun
         cpu = time.process_time() - cpu_begun
-        aovs = render_aovs(compiled, sampler, settings, run.observer) if settings.aovs else {}
+        aovs = render_aovs(compiled, sampler, settings, run.observer) if settings.first_hit_aovs else {}
     image = film_image(compiled, settings, film, aovs)
     statistics = _statistics(run, sampler, film, compile_seconds, seconds, cpu)
     techniques = sampler.recorder and sampler.recorder.film.images(film.iterations)
@@ -179,7 +184,7 @@ def film_image(compiled, settings, film, aovs):
         variance=film.variance(),
         spectral=film.spectral(),
         band_centres=0.5 * (edges[1:] + edges[:-1]) if settings.spectral else None,
-        aovs={name: values for name, values in aovs.items() if name != "variance"},
+        aovs=aovs,
         rejected=tuple(film.rejected),
         rejected_count=film.rejected_count,
         world_to_camera=compiled.matrices[0],

@@ -176,6 +176,14 @@ def test_stopping_before_the_start():
     assert result.film.rgb.any() or "black" in warnings[0]
 
 
+def test_the_variance_alone_takes_no_rays_of_its_own(monkeypatch):
+    def refuse(*args):
+        pytest.fail("first hits are traced, which nobody asked for")
+
+    monkeypatch.setattr("artist_py.samplers.render_job.render_aovs", refuse)
+    assert render(room(), 2, aovs=("variance",)).film.variance is not None
+
+
 # --- estimates of the error ---------------------------------------------------------------------------------------
 
 SEEDS = 64

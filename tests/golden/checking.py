@@ -1,7 +1,17 @@
-"""The assertion that tests of golden images share."""
+"""What tests of golden images share."""
 
 import numpy as np
-from golden_cases import TEST_SEED, comparisons, measure, read_golden
+import pytest
+from golden_cases import CASES, TEST_SEED, comparisons, measure, read_golden
+
+
+def parameters_of(*integrators):
+    """The cases that these render, as parameters of a test."""
+    return [
+        pytest.param(case, id=case.name, marks=[pytest.mark.slow] if case.is_slow else [])
+        for case in CASES
+        if case.integrator in integrators
+    ]
 
 
 def assert_golden(case):

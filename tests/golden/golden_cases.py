@@ -17,6 +17,7 @@ from rendering import with_render
 
 import artist_py
 from artist_py.compare.z_test import Moments, student_tail, symmetric_tail, z_test
+from artist_py.evidence.reference import block_means
 from artist_py.film.reading import read_image
 
 ROOT = Path(__file__).parents[2]
@@ -37,6 +38,7 @@ class Case(NamedTuple):
     integrator: str
     iterations: int  # of a replicate
     settings: tuple = ()  # (dotted key, value) beyond integrator and size
+    is_slow: bool = False  # checked by `make slow` alone, since its kernels are much like those of others
 
     @property
     def name(self):
@@ -53,34 +55,29 @@ CASES = (
     Case("prism", "pt", 32),
     Case("textures", "pt", 8),
     Case("fluorescent_spheres", "pt", 8),
-    Case("instances", "pt", 4, ONE_WAVELENGTH),
-    Case("sun_sky", "pt", 8, ONE_WAVELENGTH),
+    Case("instances", "pt", 4, ONE_WAVELENGTH, is_slow=True),
+    Case("sun_sky", "pt", 8, ONE_WAVELENGTH, is_slow=True),
     Case("cornell_box", "lt", 4, ONE_WAVELENGTH),
     Case("spotlights", "lt", 4, ONE_WAVELENGTH),
     Case("sun_sky", "bpt", 8),
     Case("cornell_box", "bpt", 16, ONE_WAVELENGTH),
-    Case("box_glossy", "bpt", 4, ONE_WAVELENGTH),
+    Case("box_glossy", "bpt", 4, ONE_WAVELENGTH, is_slow=True),
     Case("depth_of_field", "bpt", 4, ONE_WAVELENGTH),
     Case("veach_room", "bpt", 4, ONE_WAVELENGTH),
     Case("fluorescent_room", "bpt", 8),
     Case("box_spheres", "ppm", 4, ONE_WAVELENGTH),
-    Case("small_light", "ppm", 4, ONE_WAVELENGTH),
+    Case("small_light", "ppm", 4, ONE_WAVELENGTH, is_slow=True),
     Case("cornell_grooved", "bpm", 4, ONE_WAVELENGTH),
     Case("spotlights", "bpm", 4, ONE_WAVELENGTH),
     Case("glass_sphere", "vcm", 16),
     Case("highlighters", "vcm", 8),
-    Case("ball_in_ball", "vcm", 4, ONE_WAVELENGTH),
+    Case("ball_in_ball", "vcm", 4, ONE_WAVELENGTH, is_slow=True),
     Case("box_glossy", "vcm", 4, ONE_WAVELENGTH),
-    Case("cone_caustic", "vcm", 4, ONE_WAVELENGTH),
+    Case("cone_caustic", "vcm", 4, ONE_WAVELENGTH, is_slow=True),
     Case("cornell_box", "vcm", 4, ONE_WAVELENGTH),
-    Case("mirror_ceiling", "vcm", 4, ONE_WAVELENGTH),
+    Case("mirror_ceiling", "vcm", 4, ONE_WAVELENGTH, is_slow=True),
     Case("sds_pool", "vcm", 4, ONE_WAVELENGTH),
 )
-
-
-def cases_of(*integrators):
-    """The cases that these render."""
-    return [case for case in CASES if case.integrator in integrators]
 
 
 class Golden(NamedTuple):
@@ -107,7 +104,7 @@ def measure(case, first_seed, weights):
     for image in replicates(case, first_seed, REPLICATES):
         weighted = weights * image
         result.pixels.add(image)
-        result.blocks.add(block_means(weighted))
+        result.blocks.add(block_means(weighted, BLOCK))
         result.whole.add(weighted.mean(axis=(0, 1)))
     return result
 
@@ -122,12 +119,6 @@ def replicates(case, first_seed, count):
         film = artist_py.render(with_render(compiled, seed=seed), iterations=case.iterations, threads=1).film
         assert film.rejected_count == 0
         yield film.rgb
-
-
-def block_means(image):
-    """Means of the blocks of BLOCK x BLOCK pixels."""
-    blocks = SIZE // BLOCK
-    return image.reshape(blocks, BLOCK, blocks, BLOCK, 3).mean(axis=(1, 3))
 
 
 def comparisons(image, golden):

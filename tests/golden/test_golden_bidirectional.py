@@ -1,10 +1,9 @@
 """`bpt` still computes the golden images."""
 
 import pytest
-from checking import assert_golden
-from golden_cases import cases_of
+from checking import assert_golden, parameters_of
 
 
-@pytest.mark.parametrize("case", cases_of("bpt"), ids=lambda case: case.name)
+@pytest.mark.parametrize("case", parameters_of("bpt"))
 def test_image_is_the_golden_one(case):
     assert_golden(case)

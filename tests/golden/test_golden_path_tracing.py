@@ -1,10 +1,9 @@
 """`pt` and `lt` still compute the golden images."""
 
 import pytest
-from checking import assert_golden
-from golden_cases import cases_of
+from checking import assert_golden, parameters_of
 
 
-@pytest.mark.parametrize("case", cases_of("pt", "lt"), ids=lambda case: case.name)
+@pytest.mark.parametrize("case", parameters_of("pt", "lt"))
 def test_image_is_the_golden_one(case):
     assert_golden(case)

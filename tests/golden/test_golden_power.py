@@ -42,8 +42,9 @@ def test_golden_images_are_precise():
 
 
 def test_there_are_twenty_and_every_integrator_is_among_them():
-    assert len(CASES) >= 20
-    assert {case.integrator for case in CASES} == {"pt", "lt", "bpt", "ppm", "bpm", "vcm"}
+    fast = [case for case in CASES if not case.is_slow]
+    assert len(fast) >= 20
+    assert {case.integrator for case in fast} == {"pt", "lt", "bpt", "ppm", "bpm", "vcm"}
 
 
 def test_files_keep_the_errors_of_nearly_black_pixels(tmp_path, monkeypatch):

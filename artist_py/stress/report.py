@@ -29,8 +29,8 @@ img { image-rendering: pixelated; width: 32px; height: 32px; object-fit: fill; d
 </style></head><body>
 <h1>artist stress</h1>
 <p>$summary, $seconds s.</p>
-<p>A cell shows its picture, the mean over what is expected, the largest deviation of the image or one of its
-quarters in standard errors (se), iterations and seconds. Pictures: middle grey is what is expected; where nothing is,
+<p>A cell shows its picture, the mean over what is expected (the mean itself where that is 0), the largest deviation of
+the image or one of its quarters in standard errors (se), iterations and seconds. Pictures: middle grey is what is expected; where nothing is,
 their own mean.</p>
 $faults
 <table><thead><tr><th>case</th><th>expected</th>$heads</tr></thead><tbody>
@@ -78,7 +78,8 @@ def _cell(matrix, case, integrator):
     kind = {"ok": "ok", "too noisy": "noisy"}.get(verdict.status, "wrong")
     lines = [escape(verdict.status)]
     if verdict.z is not None:
-        lines.append(f"{1 + verdict.deviation:.4f} &plusmn; {verdict.error:.4f}")
+        expected = 0 if case.expect == Radiance(0) else 1
+        lines.append(f"{expected + verdict.deviation:.4f} &plusmn; {verdict.error:.4f}")
         lines.append(f"{verdict.z:.1f} se")
     if cell.found is not None:
         count = f"{cell.found.iterations} it, " if cell.found.iterations else ""

@@ -41,6 +41,8 @@ CASES = (
         "The same, up to all ten events.",
         glowing_room((300, 740, 0.3), TEN, edges=11)[0],
         SameAs("pt"),
+        precision=0.03,
+        least=1024,  # some sets of wavelengths bring many times the mean, and 16 iterations seldom see one
         why="More events than sets of wavelengths have a bias, the same for all integrators.",
     ),
     glowing(

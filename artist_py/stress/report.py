@@ -30,8 +30,8 @@ img { image-rendering: pixelated; width: 32px; height: 32px; object-fit: fill; d
 <h1>artist stress</h1>
 <p>$summary, $seconds s.</p>
 <p>A cell shows its picture, the mean over what is expected (the mean itself where that is 0), the largest deviation of
-the image or one of its quarters in standard errors (se), iterations and seconds. Pictures: middle grey is what is expected; where nothing is,
-their own mean.</p>
+the image or one of its quarters in standard errors (se), iterations and seconds. Pictures: middle grey is what is
+expected; where nothing is, their own mean.</p>
 $faults
 <table><thead><tr><th>case</th><th>expected</th>$heads</tr></thead><tbody>
 $rows

@@ -17,9 +17,9 @@ def sample_wavelengths(nodes, zero, u):
     count = lane_count(zero)
     wavelengths, weights = zero, zero
     for i in range(count):
-        wavelength, width = _inverse(nodes, (u + i) / count)
+        wavelength, inverse_density = wavelength_at(nodes, (u + i) / count)
         wavelengths = with_lane(wavelengths, i, wavelength)
-        weights = with_lane(weights, i, width / count)
+        weights = with_lane(weights, i, inverse_density / count)
     return wavelengths, weights
 
 
@@ -41,8 +41,8 @@ def share_below(nodes, wavelength):
 
 
 @function
-def _inverse(nodes, u):
-    """Wavelength at u, nm, and 1 / p there."""
+def wavelength_at(nodes, u):
+    """The wavelength below which the share u in [0, 1] of the density lies, nm, and 1 / p there, nm."""
     entries = nodes.shape[0] - 1
     scaled = u * entries
     index = min(int(scaled), entries - 1)

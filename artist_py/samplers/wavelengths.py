@@ -39,7 +39,7 @@ def tolerance_of(merging, iteration):
 def mean_acceptance(nodes, count, tolerance, steps=4096):
     """Mean over an eye path's wavelengths of P_acc (theory 2.7; transport/rotation.py), in (0, 1].
 
-    It lowers n_vm in the weights of all techniques; merges themselves are divided by the exact probability.
+    It lowers n_vm in the weights of all techniques.
     """
     shares = np.linspace(0.0, 1.0, len(nodes))
     position = (np.arange(steps) + 0.5) / steps

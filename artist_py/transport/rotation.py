@@ -2,13 +2,16 @@
 
 The hero sets of two subpaths are F^-1((u + i) / C) with offsets u of their own (core/wavelengths.py). A cyclic rotation
 of the lanes by at most one step brings each wavelength next to its nearest of the other set; where it wraps red onto
-violet the lane is dropped. A lane of an eye vertex at wavelength l accepts photons with l' in [l - d, l + d], and as
-u' is uniform the probability of that is (theory 2.7, for any density of wavelengths and at the ends of the range)
+violet the lane is dropped. A lane of an eye vertex at wavelength l accepts photons with l' in a window around it:
+[l - d, l + d], not beyond half a step to either side, nor beyond the ends of the range. It is accepted with probability
+C (F(high) - F(low)), P_acc of theory (2.7), and as u' is uniform l' has density C p(l') there. A photon counts
 
-    P_acc(l) = C (F(l + d) - F(l - d)),   not beyond half a step to either side.
+    1 / (C p(l') (high - low)),
 
-Dividing by it makes merges exact wherever flux does not depend on wavelength; elsewhere they are blurred over 2 d
-(2.8), a bias that does not shrink with the radius.
+so that what merges bring is the mean of the flux over the window (2.8): exact wherever flux does not depend on
+wavelength, elsewhere blurred over 2 d, a bias that does not shrink with the radius. Dividing by P_acc, which is the
+same where p is constant, would give wavelengths with much light more than their share: lines became several times too
+bright.
 """
 
 from typing import NamedTuple
@@ -16,7 +19,7 @@ from typing import NamedTuple
 from ..core.spectra import black
 from ..core.table import Table
 from ..core.vector import Spectrum, lane, lane_count, lane_sum, with_lane
-from ..core.wavelengths import sample_wavelengths, share_below
+from ..core.wavelengths import sample_wavelengths, share_below, wavelength_at
 from ..jit import function
 from .vertices import load_throughput
 
@@ -33,6 +36,8 @@ class Window(NamedTuple):
 
     low: Spectrum
     high: Spectrum
+    width: Spectrum  # of that in wavelength, nm
+    nodes: Table  # float64 (n + 1,), see core/wavelengths.py
     offset: float
     pixel: int
 
@@ -47,15 +52,18 @@ def window_of(rotation, nodes, wavelengths, pixel):
 
 @function
 def _window(rotation, nodes, wavelengths, pixel):
-    low, high = black(wavelengths), black(wavelengths)
+    low, high, width = black(wavelengths), black(wavelengths), black(wavelengths)
     offset, count = rotation.offsets[pixel], lane_count(wavelengths)
     for i in range(count):
         wavelength = float(lane(wavelengths, i))
         below = count * share_below(nodes, wavelength - rotation.tolerance)
         above = count * share_below(nodes, wavelength + rotation.tolerance)
-        low = with_lane(low, i, max(below, offset + i - 0.5))
-        high = with_lane(high, i, min(above, offset + i + 0.5))
-    return Window(low, high, offset, pixel)
+        below, above = max(below, offset + i - 0.5), min(above, offset + i + 0.5)
+        first, _ = wavelength_at(nodes, below / count)
+        last, _ = wavelength_at(nodes, above / count)
+        low, high = with_lane(low, i, below), with_lane(high, i, above)
+        width = with_lane(width, i, last - first)
+    return Window(low, high, width, nodes, offset, pixel)
 
 
 @function
@@ -68,7 +76,7 @@ def wavelengths_of_pixel(offsets, sensing, shared, pixel):
 
 @function
 def throughput_in_line(window, photon, zero):
-    """The photon's throughput at the wavelengths of the eye vertex, over P_acc; zero where a lane is not accepted."""
+    """The photon's throughput at the wavelengths of the eye vertex, as it counts; zero for lanes not accepted."""
     if window is None:
         return load_throughput(photon, zero)
     return _rotated(window, photon, zero)
@@ -86,9 +94,11 @@ def _rotated(window, photon, zero):
     elif difference < -0.5:
         rotation = 1
     for i in range(count):
-        low, high, position = lane(window.low, i), lane(window.high, i), photon.offset + (i + rotation)
-        if low <= position < high and 0 <= i + rotation < count:
-            throughput = with_lane(throughput, i, photon.throughput[i + rotation] / (high - low))
+        position = photon.offset + (i + rotation)
+        if lane(window.low, i) <= position < lane(window.high, i) and 0 <= i + rotation < count:
+            _, inverse_density = wavelength_at(window.nodes, position / count)
+            value = photon.throughput[i + rotation] * (inverse_density / (count * lane(window.width, i)))
+            throughput = with_lane(throughput, i, value)
     return throughput
 
 

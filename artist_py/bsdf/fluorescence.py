@@ -10,13 +10,13 @@ Under a clear coat (plastic.py) the matrix holds all that happens below it, and 
 here; what the coat mirrors stays at its wavelength.
 """
 
-from ..core.fresnel import fresnel_dielectric
 from ..core.sets import first_lanes, from_next_set, from_previous_set, received, row_of
 from ..core.vector import lane_max, splat
 from ..core.warp import INV_PI
 from ..jit import function
 from ..scene.tables import PLASTIC
 from .dispatch import is_black
+from .plastic import coat_reflectance, through
 
 
 @function
@@ -36,14 +36,12 @@ def _through_coat(needed, material, wo, wi):
         return 1.0
     if material.kind != PLASTIC:
         return 1.0
-    return _transmitted(material, wo) * _transmitted(material, wi) / material.transmittance
+    return _transmitted(material, wo, wi)
 
 
 @function
-def _transmitted(material, w):
-    """T(w) of the coat, from either side of the surface."""
-    reflectance, _ = fresnel_dielectric(abs(w.z), material.ior)
-    return 1.0 - reflectance
+def _transmitted(material, wo, wi):
+    return through(material, coat_reflectance(material, wo), coat_reflectance(material, wi))
 
 
 @function
@@ -134,4 +132,4 @@ def _leaving(needed, material, wo):
     """Share of what is given off that comes out towards `wo`: the integral of pi f_fl cos over `wi`."""
     if needed is None:
         return 1.0
-    return 1.0 if material.kind != PLASTIC else _transmitted(material, wo)
+    return 1.0 if material.kind != PLASTIC else 1.0 - coat_reflectance(material, wo)

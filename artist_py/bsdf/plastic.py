@@ -42,8 +42,8 @@ def with_dyes(coated_dyes, material, below):
 
 @function
 def coat_reflectance(material, w):
-    """F(w), of the mirroring coat."""
-    reflectance, _ = fresnel_dielectric(w.z, material.ior)
+    """F(w), of the mirroring coat, from either side of the surface."""
+    reflectance, _ = fresnel_dielectric(abs(w.z), material.ior)
     return reflectance
 
 

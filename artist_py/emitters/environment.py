@@ -81,7 +81,7 @@ def first_above(cumulative, first, count, u):
     low, high = 0, count - 1
     while low < high:
         middle = (low + high) >> 1
-        if cumulative[first + middle] > u:
+        if float(cumulative[first + middle]) > u:
             high = middle
         else:
             low = middle + 1

@@ -14,7 +14,7 @@ from ..cameras.sensor import pdf_camera_direction
 from ..core.frame import to_local
 from ..core.fresnel import fresnel_dielectric
 from ..core.spectra import ior_of_lane, lane_of
-from ..core.vector import dot, lane_count, lane_sum, vec3
+from ..core.vector import dot, lane_count, lane_sum
 from ..emitters.dispatch import can_be_hit, pdf_emitter
 from ..emitters.emission import pdf_emission_of_background, pdf_emission_of_hit
 from ..emitters.point import pdf_direction_of_point
@@ -120,7 +120,7 @@ def lobe_probability(scene, wavelengths, material, node, wo, wi):
         lanes = sheet_reflectance(ratio, material, scene.spectra, wavelengths, wo, node.outside)
         reflectance = lane_sum(lanes) / lane_count(lanes)
     elif material.kind == PLASTIC:
-        face = coat_reflectance(material, vec3(wo.x, wo.y, abs(wo.z)))
+        face = coat_reflectance(material, wo)
         return mirror_probability(face, colour_below(material, node.reflectance))
     else:
         return 1.0

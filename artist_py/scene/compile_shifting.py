@@ -62,5 +62,5 @@ def redistribution(matrices, first):
     with np.errstate(invalid="ignore"):
         shares = np.where(totals[:, :, None] > 0.0, sums / totals[:, :, None], 1.0)
     return tables.Redistribution(
-        float(first), Table(shares.astype(np.float32)), Table(totals.astype(np.float32))
+        float(first), Table(shares.astype(np.float32).ravel()), Table(totals.astype(np.float32))
     )

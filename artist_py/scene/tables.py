@@ -249,7 +249,7 @@ class Redistribution(NamedTuple):
     """Where fluorescence leads to from each wavelength, a row per fluorescent material; bins of 1 nm."""
 
     first: float  # nm, lower edge of bin 0
-    shares: Table  # float32 (rows, bins, bins): of all that is led on from a bin, what goes up to the end of another
+    shares: Table  # float32 (rows * bins * bins,): of all that is led on from a bin, what goes up to the end of another
     totals: Table  # float32 (rows, bins): the sum of R over where it leads to
 
 

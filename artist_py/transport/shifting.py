@@ -23,6 +23,7 @@ from ..core.spectra import ONE_MINUS
 from ..core.vector import lane, lane_count, with_lane
 from ..core.warp import INV_PI
 from ..core.wavelengths import sample_wavelengths
+from ..emitters.environment import first_above
 from ..jit import function
 from .subpath import Vertex
 
@@ -96,28 +97,17 @@ def redistributed(redistribution, row, wavelength, elastic, u):
     if not u * total < glow:
         return wavelength, total
     u = min(u * total / glow, ONE_MINUS)
-    shares, reached = redistribution.shares, _first_above(redistribution.shares, row, own, u)
-    below = float(shares[row, own, reached - 1]) if reached > 0 else 0.0
-    fraction = (u - below) / (float(shares[row, own, reached]) - below)
+    shares, bins = redistribution.shares, redistribution.totals.shape[1]
+    first = (row * bins + own) * bins
+    reached = first_above(shares, first, bins, u)
+    below = float(shares[first + reached - 1]) if reached > 0 else 0.0
+    fraction = (u - below) / (float(shares[first + reached]) - below)
     return redistribution.first + reached + min(fraction, INSIDE), total
 
 
 @function
 def _bin_of(redistribution, wavelength):
     return min(max(int(wavelength - redistribution.first), 0), redistribution.totals.shape[1] - 1)
-
-
-@function
-def _first_above(shares, row, own, u):
-    """The first of an increasing row of shares that is above `u`; the last one is 1."""
-    low, high = 0, shares.shape[2] - 1
-    while low < high:
-        middle = (low + high) // 2
-        if float(shares[row, own, middle]) > u:
-            high = middle
-        else:
-            low = middle + 1
-    return low
 
 
 # --- photons

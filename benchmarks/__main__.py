@@ -18,6 +18,8 @@ BENCHMARKS = (
     "samplers",
     "correlation",
     "published",
+    "fluorescence_cost",
+    "colour_control",
     "findings",
 )
 

@@ -275,6 +275,54 @@ def published():
     return table("Fluorescence by shared sets and by published ways", results, header, rows)
 
 
+def fluorescence_cost():
+    """Ratios to white paint."""
+    if not (results := load("fluorescence_cost")):
+        return None
+    rows = [
+        (
+            label,
+            f"{figures['time']['median']:.2f} ({figures['time']['lowest']:.2f} to {figures['time']['highest']:.2f})",
+            f"{figures['memory']['ratio']:.2f} ({figures['memory']['bytes'] / MIB:.0f} MiB)",
+            f"{figures['memory']['stored_ratio']:.2f}",
+        )
+        for label, figures in results["scenes"].items()
+    ]
+    targets = results["targets"]
+    header = (
+        "scene",
+        f"times the CPU time of an iteration with white paint (at most {targets['time']})",
+        f"times the peak memory (at most {targets['memory']})",
+        "of what a render stores alone",
+    )
+    return table("Cost of fluorescence", results, header, rows)
+
+
+def colour_control():
+    """Noise with and without control."""
+    if not (results := load("colour_control")):
+        return None
+    rows = [
+        (
+            scene,
+            iterations,
+            *(
+                f"{100 * figures['without'][what][i]:.2g} / {100 * figures['with'][what][i]:.2g}"
+                for what in ("mean", "pixel")
+            ),
+        )
+        for scene, figures in results["scenes"].items()
+        for i, iterations in enumerate(results["iterations"])
+    ]
+    header = (
+        "scene",
+        "iterations",
+        "deviation of the image's mean from seed to seed, %: without / with control",
+        "of its pixels",
+    )
+    return table("Control of colour", results, header, rows)
+
+
 def _against(ours, theirs):
     """`(both errors, how many times less ours is)`."""
     return f"{1e3 * ours:.3g} / {1e3 * theirs:.3g}", f"{theirs / ours:.3g}"
@@ -348,6 +396,8 @@ WRITERS = (
     samplers,
     correlation,
     published,
+    fluorescence_cost,
+    colour_control,
     findings,
     ablations,
 )

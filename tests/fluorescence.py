@@ -11,8 +11,7 @@ import numpy as np
 from rendering import look, scene, shape
 from scipy import stats
 
-from artist_py.film.accumulation import Film
-from artist_py.samplers.render_job import RenderSettings, Silence, sampler_for
+from artist_py.samplers.render_job import RenderSettings, Silence, film_of, sampler_for
 from artist_py.samplers.wavelengths import sets_of_wavelengths
 
 FALSE_ALARM = 1e-4  # probability that one comparison fails by chance
@@ -89,8 +88,12 @@ def on_bins(compiled):
     return Surfaces(emission, np.array(scatter), compiled.spectra[:3].astype(float))
 
 
-def on_sets(compiled, iteration):
-    """`Surfaces` at the wavelengths of an iteration, where fluorescence leads from each set to the one before."""
+def on_sets(compiled, iteration, by_wavelength=False):
+    """`Surfaces` at the wavelengths of an iteration, where fluorescence leads from each set to the one before.
+
+    But for images by wavelength there is a lane more for each channel of the film: of what it should get by all
+    wavelengths what it does not get by those of set 0.
+    """
     render, sets = compiled.graph.render, compiled.fluorescence.n_sets
     wavelengths, weights = sets_of_wavelengths(
         compiled.fluorescence.set_nodes, render.hero_count, render.seed, iteration
@@ -105,7 +108,27 @@ def on_sets(compiled, iteration):
         scatter[:, m * count : (m + 1) * count, source * count : (source + 1) * count] += block
     response = np.zeros((3, lanes))
     response[:, :count] = compiled.spectra[:3, bins[0]] * weights[0]
-    return Surfaces(emission[:, bins.ravel()], scatter, response)
+    surfaces = Surfaces(emission[:, bins.ravel()], scatter, response)
+    if by_wavelength or sets == 1:
+        return surfaces
+    return _controlled(compiled, surfaces, slice(count, 2 * count), bins[1], weights[1])
+
+
+def _controlled(compiled, surfaces, set_1, bins, weights):
+    """`surfaces` with the lanes of the control (theory 3.9); lanes, bins and weights are those of set 1."""
+    reflectance, emission, matrices = _tables(compiled)
+    sensor, means = compiled.spectra[:3].astype(float), compiled.fluorescence.means
+    lanes = surfaces.response.shape[1]
+    missed = emission @ sensor.T - surfaces.emission @ surfaces.response.T
+    scatter = np.zeros((len(matrices), lanes + 3, lanes + 3))
+    scatter[:, :lanes, :lanes] = surfaces.scatter
+    for surface in range(len(matrices)):
+        scatter[surface, lanes:, lanes:] = np.diag(means @ reflectance[surface])
+        by_set_0 = surfaces.response[:, : bins.size] @ surfaces.scatter[surface, : bins.size, set_1]
+        scatter[surface, lanes:, set_1] = sensor @ matrices[surface][:, bins] * weights - by_set_0
+    return Surfaces(
+        np.hstack([surfaces.emission, missed]), scatter, np.hstack([surfaces.response, np.eye(3)])
+    )
 
 
 def _tables(compiled):
@@ -138,12 +161,12 @@ def enclosure_colour(compiled, iteration, edges=200):
     return surfaces.response @ radiance
 
 
-def iteration_images(compiled, iterations):
+def iteration_images(compiled, iterations, spectral=False):
     """The image of each iteration, (iterations, h, w, 3)."""
-    width, height = compiled.graph.film.resolution
-    film = Film(height, width)
+    settings = RenderSettings(iterations=iterations, threads=2, spectral=spectral)
+    film = film_of(compiled, settings)
     found = []
-    with sampler_for(compiled, film, RenderSettings(iterations=iterations, threads=2), Silence()) as sampler:
+    with sampler_for(compiled, film, settings, Silence()) as sampler:
         sampler.compile_kernels(Silence())
         for iteration in range(iterations):
             before = film.sums.copy()
@@ -153,9 +176,9 @@ def iteration_images(compiled, iterations):
     return np.array(found)
 
 
-def iteration_colours(compiled, iterations):
+def iteration_colours(compiled, iterations, spectral=False):
     """Mean RGB of the image of each iteration, (iterations, 3)."""
-    return iteration_images(compiled, iterations).mean(axis=(1, 2))
+    return iteration_images(compiled, iterations, spectral).mean(axis=(1, 2))
 
 
 def assert_deviations_vanish(found, expected, precision):

@@ -1,9 +1,9 @@
 """Spectra over several sets of wavelengths, and matrices from one set to the next: what fluorescence needs.
 
-With M sets of C wavelengths each a spectrum has M C lanes, set by set. What an eye subpath carries is a matrix, the
-radiance at each of the C wavelengths of set 0 per radiance at each of all M C wavelengths: a spectrum of M C C lanes,
-wavelength by wavelength, those of set 0 together. Everything here is worked out for the numbers of lanes at compile
-time; with one set and no matrix nothing of it is left.
+With M sets of C wavelengths each a spectrum has M C lanes, set by set. What an eye subpath carries is a matrix, what
+each column of it (a wavelength of set 0, or a channel of the film) gets per radiance at each of all M C wavelengths: a
+spectrum of M C times as many lanes as there are columns, wavelength by wavelength, all columns together. Everything
+here is worked out for the numbers of lanes at compile time; with one set and no matrix nothing of it is left.
 """
 
 import numpy as np
@@ -36,6 +36,90 @@ def first_lanes(values, like):
 
 primitive(lambda values, like: like if _are_spectra(values, like) and values.lanes >= like.lanes else None)(
     first_lanes, lambda cx, b, result, typs, args: _shuffle(b, args[0], range(result.lanes))
+)
+
+
+def lanes_after(values, skipped, like):
+    """As many lanes of `values` as `like` has, those that follow on the first ones, as many as `skipped` has."""
+    first = len(skipped.values)
+    return type(values)(values.values[first : first + len(like.values)])
+
+
+def _resolve_after(values, skipped, like):
+    if not _are_spectra(values, skipped, like) or values.lanes < skipped.lanes + like.lanes:
+        return None
+    return like
+
+
+primitive(_resolve_after)(
+    lanes_after,
+    lambda cx, b, result, typs, args: _shuffle(
+        b, args[0], range(typs[1].lanes, typs[1].lanes + result.lanes)
+    ),
+)
+
+
+def widened(values, like):
+    """The lanes of `values`, and then zeros, as many lanes as `like` has."""
+    return type(values)(np.pad(values.values, (0, len(like.values) - len(values.values))))
+
+
+def placed(values, skipped, like):
+    """As many lanes as `like` has: `values` after as many as `skipped` has, and zero elsewhere."""
+    lanes, first = np.zeros(len(like.values)), len(skipped.values)
+    lanes[first : first + len(values.values)] = values.values
+    return type(values)(lanes)
+
+
+def _lower_placed(context, builder, result, arg_types, args):
+    return _among_zeros(builder, args[0], arg_types[1].lanes, result)
+
+
+def _among_zeros(builder, vector, first, result):
+    """An LLVM vector of zeros but for `vector` from lane `first` on."""
+    count, total = vector.type.count, result.lanes
+    # LLVM joins what is of one length.
+    long = _shuffle(builder, vector, [min(i, count - 1) for i in range(total)])
+    mask = [total + i - first if 0 <= i - first < count else i for i in range(total)]
+    zeros = ir.Constant(result.vector, [0.0] * total)
+    return builder.shuffle_vector(zeros, long, ir.Constant(ir.VectorType(INT32, total), mask))
+
+
+primitive(lambda values, like: like if _are_spectra(values, like) and values.lanes <= like.lanes else None)(
+    widened, lambda cx, b, result, typs, args: _among_zeros(b, args[0], 0, result)
+)
+
+
+primitive(
+    lambda values, skipped, like: (
+        like if _are_spectra(values, skipped, like) and values.lanes + skipped.lanes <= like.lanes else None
+    )
+)(placed, _lower_placed)
+
+
+def tiled(values, like):
+    """The lanes of `values` again and again, until there are as many as `like` has."""
+    return type(values)(np.resize(values.values, len(like.values)))
+
+
+primitive(
+    lambda values, like: like if _are_spectra(values, like) and like.lanes % values.lanes == 0 else None
+)(
+    tiled,
+    lambda cx, b, result, typs, args: _shuffle(b, args[0], [i % typs[0].lanes for i in range(result.lanes)]),
+)
+
+
+def diagonal(matrix, like):
+    """The diagonal of a square matrix of as many rows as `like` has lanes."""
+    return type(matrix)(matrix.values[:: len(like.values) + 1])
+
+
+primitive(
+    lambda matrix, like: like if _are_spectra(matrix, like) and matrix.lanes == like.lanes**2 else None
+)(
+    diagonal,
+    lambda cx, b, result, typs, args: _shuffle(b, args[0], range(0, typs[0].lanes, result.lanes + 1)),
 )
 
 
@@ -138,6 +222,23 @@ def _resolve_received(sets, throughput, radiance):
 
 
 primitive(_resolve_received)(received, _lower_received)
+
+
+def at_film(start, light):
+    """Light that arrives at the film: itself, or what it brings of it by `start`, the matrix of eye subpaths there."""
+    return light if start is None else received(True, start, light)
+
+
+primitive(
+    lambda start, light: light if _is_absent(start) else _resolve_received(types.boolean, start, light)
+)(
+    at_film,
+    lambda cx, b, result, typs, args: (
+        args[1]
+        if _is_absent(typs[0])
+        else _lower_received(cx, b, result, (types.boolean, *typs), (None, *args))
+    ),
+)
 
 
 def from_next_set(coefficients, values, like):

@@ -22,7 +22,7 @@ def wavelength_density(sensor, emission):
     n_bins = len(emission)
     density = np.full(n_bins, (1.0 - 3 * CHANNEL_SHARE) / n_bins)
     for response in np.maximum(RGB_TO_XYZ @ sensor, 0.0):
-        density += CHANNEL_SHARE * _normalised(response * np.maximum(emission, 0.0), response)
+        density += CHANNEL_SHARE * normalised(response * np.maximum(emission, 0.0), response)
     return density / density.sum()
 
 
@@ -32,11 +32,11 @@ def excitation_density(seen, light, yields):
     Half of it is the density `seen` of these, and 0.45 goes where the `light` excites: `yields` is the share of the
     power that all fluorescent materials together give off again, by wavelength of excitation (theory 3.5).
     """
-    excitation = _normalised(np.maximum(light, 0.0) * yields, yields)
+    excitation = normalised(np.maximum(light, 0.0) * yields, yields)
     return 0.5 * seen + 0.45 * excitation + 0.05 / len(seen)
 
 
-def _normalised(weights, fallback):
+def normalised(weights, fallback):
     """`weights` scaled to sum to 1; if they are all zero, `fallback`, and if that is, the same everywhere."""
     for candidate in (weights, fallback, np.ones_like(weights)):
         peak = candidate.max()

@@ -9,6 +9,7 @@ cover a lens outside of the scene. Their paths of one edge are left to hits.
 
 from ..cameras.sensor import hit_lens, pdf_camera_direction
 from ..core.rng import random_number
+from ..core.sets import at_film
 from ..core.vector import dot
 from ..emitters.dispatch import is_hidden
 from ..jit import function
@@ -59,11 +60,18 @@ def _splat_lens_hit(
         return
     weight = _weight(setup.camera, setup.method, path, partial, hit)
     scale = weight * hit.importance * pixel.weight / setup.method.n_image_paths
-    stores = setup.stores
+    stores, value = setup.stores, at_film(setup.sensing.start, path.throughput) * scale
     store_splat(
-        stores.techniques, stores.splats, thread, stores.paths[index], pixel.index, path.throughput * scale, LENS,
-        length, weight,
-    )  # fmt: skip
+        stores.techniques,
+        stores.splats,
+        thread,
+        stores.paths[index],
+        pixel.index,
+        value,
+        LENS,
+        length,
+        weight,
+    )
 
 
 @function

@@ -6,7 +6,7 @@ from ..bsdf.dispatch import is_delta_bsdf
 from ..bsdf.fluorescence import scattered_light
 from ..cameras.sensor import connect_to_lens
 from ..core.rng import random_number, random_pair
-from ..core.sets import chosen
+from ..core.sets import at_film, chosen
 from ..core.spectra import black
 from ..core.vector import dot
 from ..emitters.dispatch import choose_emitter, emitted_radiance
@@ -206,7 +206,7 @@ def _splat(
     connected = connect_to_camera(setup.scene, counts, vertex, partial, survival, sensor, wavelengths)
     material, fluorescence = setup.scene.materials[vertex.surface.material], setup.scene.fluorescence
     value = scattered_light(fluorescence, material, path.throughput, connected.f_cos, connected.glow)
-    value = chosen(fluorescence, path.throughput * connected.f_cos, value)
+    value = chosen(fluorescence, path.throughput * connected.f_cos, at_film(setup.sensing.start, value))
     value = value * (pixel.weight / setup.method.n_image_paths)
     store_splat(
         stores.techniques, stores.splats, thread, stores.paths[index], pixel.index, value, LT, length + 1,

@@ -40,7 +40,7 @@ def render_aovs(compiled, sampler, settings, observer):
 def _scene_and_sensing(compiled, sampler, sample):
     """As the sampler has them; where wavelengths shift, with sets of them, which albedos take fewer samples by."""
     if compiled.fluorescence is not None:
-        return sampler.fluorescent_scene_and_sensing(sample, None)
+        return sampler.fluorescent_scene_and_sensing(sample, None, False)
     return sampler.scene_and_sensing(sample, None)
 
 

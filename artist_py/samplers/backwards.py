@@ -80,7 +80,8 @@ class BackwardsSampler(StochasticSampler):
         self.subset = subset_of(render.integrator, render.samples)
         self.n_pixels = film.width * film.height
         self.light_paths = light_paths  # per pixel
-        self.lanes, eye_lanes = lanes_of(compiled)
+        lanes = lanes_of(compiled, self.bands is not None)
+        self.lanes = lanes.light
         self.counts = {"light_vertices": 0, "eye_vertices": 0, "merges": 0}
         self.phases = dict.fromkeys(("subpaths", "photon_grid", "merging", "light_image", "film"), 0.0)
         self.offsets = self._offsets(render)
@@ -90,10 +91,8 @@ class BackwardsSampler(StochasticSampler):
         self.light = self._pool(
             stored_vertex_dtype(compiled, self.lanes), self.subset.connect or self.subset.merge
         )
-        self.eye = self._pool(stored_vertex_dtype(compiled, eye_lanes), self.subset.merge)
-        self.splats = self._pool(
-            splat_dtype(render.hero_count, recorder is not None), self.subset.light_image
-        )
+        self.eye = self._pool(stored_vertex_dtype(compiled, lanes.eye), self.subset.merge)
+        self.splats = self._pool(splat_dtype(lanes.film, recorder is not None), self.subset.light_image)
         is_weighed = self.subset.merge and not self.subset.merge_once
         self.pilot = None
         if is_weighed and self.merging.correlation == "vcm+":

@@ -1,5 +1,7 @@
 """What a render stores, in bytes, and how it is kept within a bound."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ..core.table import Table
@@ -9,6 +11,7 @@ from ..transport.photon_grid import photon_dtype
 from ..transport.splats import splat_dtype
 from ..transport.vertices import vertex_dtype
 from .techniques import BYTES_PER_VALUE, techniques_of_render
+from .wavelengths import CHANNELS
 
 BAND_NM = 10
 RECORDS_PER_PATH = 4  # vertices that are stored of a subpath, about; pools that run short grow
@@ -16,12 +19,31 @@ BYTES_PER_FACE = 110  # of Embree's acceleration structure, about
 FEWEST_LIGHT_PATHS = 0.05  # per pixel
 
 
-def lanes_of(compiled):
-    """Numbers that the throughput of a light subpath has, and of an eye subpath (core/sets.py)."""
+class LaneCounts(NamedTuple):
+    """How many numbers there are of what is stored (core/sets.py)."""
+
+    light: int  # throughput of a light subpath
+    eye: int  # and of an eye subpath
+    film: int  # wavelengths or channels that the film sees
+
+
+def carries_colour(compiled, by_wavelength):
+    """Whether eye subpaths carry what the film's channels get, and with it their control (bsdf/fluorescence.py).
+
+    It makes up for the chance in set 0 by the wavelengths of set 1, and tells no wavelengths apart in the image.
+    """
+    return compiled.has_sets and compiled.fluorescence.n_sets > 1 and not by_wavelength
+
+
+def lanes_of(compiled, by_wavelength):
+    """`LaneCounts` of a render; `by_wavelength`: its image is wanted per wavelength as well."""
     count = compiled.graph.render.hero_count
     if not compiled.has_sets:
-        return count, count
-    return compiled.fluorescence.n_sets * count, compiled.fluorescence.n_sets * count**2
+        return LaneCounts(count, count, count)
+    lanes = compiled.fluorescence.n_sets * count
+    if carries_colour(compiled, by_wavelength):
+        return LaneCounts(lanes + CHANNELS, (lanes + CHANNELS) * CHANNELS, CHANNELS)
+    return LaneCounts(lanes, lanes * count, count)
 
 
 def stored_vertex_dtype(compiled, lanes):
@@ -63,6 +85,7 @@ def memory_estimate(compiled, settings):
     emitters = compiled.scene.emitters
     faces = len(geometry.triangles) + len(geometry.parallelograms)
     light_paths = compiled.graph.render.merging.light_paths
+    lanes = lanes_of(compiled, settings.spectral)
     return {
         "film": pixels * (12 + 24 + 12 + (24 if "variance" in settings.aovs else 0) + 12 * bands),
         "techniques": pixels * _bytes_of_techniques(compiled, settings),
@@ -72,8 +95,8 @@ def memory_estimate(compiled, settings):
         "spectra": compiled.spectra.nbytes
         + (_bytes_of_fluorescence(compiled) if compiled.fluorescence else 0),
         "textures": sum(image.nbytes for image in compiled.texture_images),
-        "eye vertices": pixels * _bytes_per_eye_path(compiled),
-        "light vertices": round(pixels * light_paths * _bytes_per_light_path(compiled)),
+        "eye vertices": pixels * _bytes_per_eye_path(compiled, lanes),
+        "light vertices": round(pixels * light_paths * _bytes_per_light_path(compiled, lanes)),
     }
 
 
@@ -95,22 +118,21 @@ def _subset(render):
     return subset_of(render.integrator, render.samples) if render.integrator in METHODS else None
 
 
-def _bytes_per_eye_path(compiled):
-    method, (_, lanes) = _subset(compiled.graph.render), lanes_of(compiled)
-    return RECORDS_PER_PATH * stored_vertex_dtype(compiled, lanes).itemsize if method and method.merge else 0
+def _bytes_per_eye_path(compiled, lanes):
+    method, record = _subset(compiled.graph.render), stored_vertex_dtype(compiled, lanes.eye)
+    return RECORDS_PER_PATH * record.itemsize if method and method.merge else 0
 
 
-def _bytes_per_light_path(compiled):
+def _bytes_per_light_path(compiled, lanes):
     """Stored vertices, their copies in the photon grid, and splats."""
-    render, (lanes, _) = compiled.graph.render, lanes_of(compiled)
-    method = _subset(render)
+    method = _subset(compiled.graph.render)
     if method is None:
         return 0
-    size, photon = 40, stored_photon_dtype(compiled, lanes)
+    size, photon = 40, stored_photon_dtype(compiled, lanes.light)
     if method.merge:
-        size += RECORDS_PER_PATH * (stored_vertex_dtype(compiled, lanes).itemsize + photon.itemsize + 8)
+        size += RECORDS_PER_PATH * (stored_vertex_dtype(compiled, lanes.light).itemsize + photon.itemsize + 8)
     if method.light_image:
-        size += RECORDS_PER_PATH * splat_dtype(render.hero_count).itemsize
+        size += RECORDS_PER_PATH * splat_dtype(lanes.film).itemsize
     return size
 
 

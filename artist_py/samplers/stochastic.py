@@ -2,6 +2,7 @@
 
 import time
 from concurrent.futures import ThreadPoolExecutor, wait
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -14,7 +15,15 @@ from ..jit import cache_statistics
 from ..transport.roulette import Limits
 from ..transport.sensing import Bands, Sensing
 from .compiling import compile_apart, types_of
-from .wavelengths import fluorescence_at, resolve_spectra, sets_of_wavelengths, shared_wavelengths
+from .memory import carries_colour
+from .wavelengths import (
+    CHANNELS,
+    ControlledSpectra,
+    fluorescence_at,
+    resolve_spectra,
+    sets_of_wavelengths,
+    shared_wavelengths,
+)
 
 STRATIFIED_PAIRS = 9  # the film, the lens, the wavelengths and two vertices; see benchmarks/README.md
 STOP_POLL_SECONDS = 0.05
@@ -35,6 +44,8 @@ class StochasticSampler:
         self.stratified_pairs = STRATIFIED_PAIRS if render.sampler == "sobol" else 0
         self.image = np.zeros((film.height, film.width, 3), np.float32)
         self.bands = self._bands()
+        # Whether eye subpaths carry the film's channels: not where the image is wanted by wavelength.
+        self.in_colour = carries_colour(compiled, self.bands is not None)
         self.rays = (0, 0)  # closest hits, occlusion
         self.phases, self.counts = {"paths": 0.0, "film": 0.0}, {}
         self.cache_hits = self.cache_misses = 0
@@ -85,7 +96,7 @@ class StochasticSampler:
         """The scene's tables and the sensor at the wavelengths of `iteration`."""
         compiled = self.compiled
         if compiled.has_sets:
-            return self.fluorescent_scene_and_sensing(iteration, bands)
+            return self.fluorescent_scene_and_sensing(iteration, bands, self.in_colour)
         render = compiled.graph.render
         zero, one = Spectrum(np.zeros(render.hero_count)), Spectrum(np.ones(render.hero_count))
         ratio = one if compiled.scene.needs.dispersion else None
@@ -99,17 +110,25 @@ class StochasticSampler:
             zero, ratio, Table(compiled.nodes), Table(shared), bands
         )
 
-    def fluorescent_scene_and_sensing(self, iteration, bands):
-        """The same with several sets of wavelengths (theory 3.2)."""
+    def fluorescent_scene_and_sensing(self, iteration, bands, in_colour):
+        """The same with several sets of wavelengths (theory 3.2); `in_colour` as in `fluorescence_at`."""
         compiled, render = self.compiled, self.compiled.graph.render
         count, first = render.hero_count, compiled.wavelength_range[0]
         shared = sets_of_wavelengths(compiled.fluorescence.set_nodes, count, render.seed, iteration)
-        fluorescence = fluorescence_at(compiled.fluorescence, count, first, *shared)
-        spectra = resolve_spectra(compiled.spectra, compiled.ior_rows, first, shared[0])
-        zero = fluorescence.zero
+        has_dispersion = compiled.scene.needs.dispersion
+        fluorescence = fluorescence_at(
+            compiled.fluorescence, count, first, *shared, in_colour, has_dispersion
+        )
+        if in_colour:
+            spectra = self._controlled_spectra.at(*shared, count)
+            # Lanes that are no wavelengths, and weights that are in the matrix already.
+            wavelengths = np.concatenate([shared[0], np.zeros(CHANNELS)])
+            shared, count = np.array([wavelengths, np.ones_like(wavelengths)]), CHANNELS
+        else:
+            spectra = resolve_spectra(compiled.spectra, compiled.ior_rows, first, shared[0])
         sensing = Sensing(
-            zero,
-            Spectrum(np.ones(len(zero.values))) if compiled.scene.needs.dispersion else None,
+            fluorescence.zero,
+            fluorescence.ratio,
             Table(compiled.nodes),
             Table(shared),
             bands,
@@ -118,6 +137,10 @@ class StochasticSampler:
         )
         scene = compiled.scene._replace(excitation=None, reemission=None)
         return scene._replace(spectra=spectra, fluorescence=fluorescence), sensing
+
+    @cached_property
+    def _controlled_spectra(self):
+        return ControlledSpectra(self.compiled)
 
     def add_to_film(self, iteration):
         """Add the image of the iteration to the film, in row order whatever the threads."""

@@ -4,7 +4,10 @@ import numpy as np
 
 from ..core.table import Table
 from ..core.vector import Spectrum
-from ..scene.tables import Fluorescence, Spectra
+from ..scene.tables import ColourControl, Fluorescence, Spectra
+
+CHANNELS = 3  # of the film
+TINY = 1e-30
 
 
 def van_der_corput(index):
@@ -69,10 +72,13 @@ def _golden(dimensions):
     return root
 
 
-def fluorescence_at(fluorescent, count, first, wavelengths, weights):
-    """`Fluorescence` between sets of `count` wavelengths each, float64 (M C,); R by bin, like spectra."""
-    n_sets, last = fluorescent.n_sets, fluorescent.totals.shape[1] - 1
-    bins = np.clip((wavelengths - first).astype(int), 0, last)
+def fluorescence_at(fluorescent, count, first, wavelengths, weights, in_colour, has_dispersion):
+    """`Fluorescence` between sets of `count` wavelengths each, float64 (M C,); R by bin, like spectra.
+
+    `in_colour`: eye subpaths carry what the film's channels get, and not its wavelengths.
+    """
+    n_sets = fluorescent.n_sets
+    bins = _bins_of(fluorescent.totals, first, wavelengths)
     out = bins.reshape(n_sets, 1, count)
     into = np.roll(bins.reshape(n_sets, count), -1, axis=0)[:, :, None]
     weight = np.roll(weights.reshape(n_sets, count), -1, axis=0)[:, :, None]
@@ -81,23 +87,89 @@ def fluorescence_at(fluorescent, count, first, wavelengths, weights):
     )  # (materials, m, j, k): to wavelength k of set m from j of m + 1
     towards_eye = rates.transpose(0, 2, 1, 3)
     towards_light = np.roll(rates, 1, axis=1).transpose(0, 3, 1, 2)  # (materials, k, m + 1, j)
-    size = (len(rates), -1)
-    survival = fluorescent.totals[:, bins].max(axis=1)
+    lanes, size = n_sets * count, (len(rates), -1)
+    control, more, matrix = None, 0, np.eye(lanes, count)
+    colour, unit = np.zeros(lanes), np.ones(count)
+    if in_colour:
+        seen = fluorescent.sensor[:, bins[:count]] * weights[:count]
+        control, more = _colour_control(fluorescent, seen, rates, bins, weights), CHANNELS
+        matrix = np.zeros((lanes + CHANNELS, CHANNELS))
+        matrix[:count], matrix[lanes:] = seen.T, np.eye(CHANNELS)
+        brought = np.maximum(np.abs(fluorescent.sensor).sum(axis=1), TINY)
+        colour, unit = np.concatenate([colour, brought]), 1.0 / brought
+    alive = np.repeat([(lanes + more) / lanes, 0.0], [lanes, more])
     return Fluorescence(
-        Table(towards_eye.reshape(size).astype(np.float32)),
-        Table(towards_light.reshape(size).astype(np.float32)),
-        Table(survival),
-        Spectrum(np.zeros(n_sets * count)),
-        Spectrum(np.eye(n_sets * count, count).ravel()),
+        _table(towards_eye.reshape(size)),
+        _table(towards_light.reshape(size)),
+        Table(fluorescent.totals[:, bins].max(axis=1)),
+        Spectrum(np.zeros(lanes + more)),
+        Spectrum(np.zeros(lanes)),
+        Spectrum(np.zeros(lanes * matrix.shape[1])),
+        Spectrum(np.zeros(lanes * count)),
+        Spectrum(matrix.ravel()),
+        Spectrum(np.repeat([1.0, 0.0], [lanes, more])),
+        Spectrum(colour),
+        Spectrum(unit),
+        Spectrum(alive) if has_dispersion else None,
+        control,
     )
+
+
+def _colour_control(fluorescent, seen, rates, bins, weights):
+    """`ColourControl` (theory 3.9, on the eye's side); `seen` (3, C) is what the film gets of set 0."""
+    count = seen.shape[1]
+    of_set_1 = slice(count, 2 * count)
+    by_all = fluorescent.colours[:, :, bins[of_set_1]] * weights[of_set_1]
+    by_set_0 = np.einsum("ck,rjk->rcj", seen, rates[:, 0])
+    table = (by_all - by_set_0).transpose(0, 2, 1).reshape(len(rates), -1)
+    sizes = count, CHANNELS, count * CHANNELS, CHANNELS**2
+    return ColourControl(_table(table), *(Spectrum(np.zeros(size)) for size in sizes))
+
+
+def _table(values):
+    return Table(values.astype(np.float32))
+
+
+def _bins_of(dense, first, wavelengths):
+    return np.clip((wavelengths - first).astype(int), 0, dense.shape[1] - 1)
 
 
 def resolve_spectra(dense, ior_rows, first, wavelengths):
     """`Spectra` at the given wavelengths only: by bin, and indices of refraction linear between the bins' centres."""
-    last = dense.shape[1] - 1
-    bins = np.clip((wavelengths - first).astype(int), 0, last)
-    values = dense[:, bins]
+    return Spectra(Table(_values_at(dense, ior_rows, first, wavelengths)), None, float(first))
+
+
+def _values_at(dense, ior_rows, first, wavelengths):
+    """Float32 (rows, lanes)."""
+    bins = _bins_of(dense, first, wavelengths)
+    last, values = dense.shape[1] - 1, dense[:, bins]
     if ior_rows:
         centres = first + 0.5 + np.arange(last + 1)
         values[ior_rows] = [np.interp(wavelengths, centres, dense[row]) for row in ior_rows]
-    return Spectra(Table(values), None, float(first))
+    return values
+
+
+class ControlledSpectra:
+    """The spectra of a scene at the wavelengths of an iteration, and for its `ColourControl`."""
+
+    def __init__(self, compiled):
+        self.dense, self.ior_rows = compiled.spectra, compiled.ior_rows
+        self.light_rows, self.first = sorted(set(compiled.light_rows)), compiled.wavelength_range[0]
+        dense = compiled.spectra.astype(float)
+        self.sensor = compiled.fluorescence.sensor
+        self.means = dense @ compiled.fluorescence.means.T  # (rows, 3)
+        self.colours = dense[self.light_rows] @ self.sensor.T  # (lights, 3): what the film gets of them
+
+    def at(self, wavelengths, weights, count):
+        """`Spectra` at M sets of `count` wavelengths, and a lane for each channel of the film.
+
+        There a property of a material has what stands for all wavelengths, and light what the film gets of all less
+        what it gets of set 0. The sensor, which is asked for channels, is that of the channels themselves.
+        """
+        values = _values_at(self.dense, self.ior_rows, self.first, wavelengths)
+        more, seen = self.means.copy(), _bins_of(self.dense, self.first, wavelengths[:count])
+        by_set_0 = values[self.light_rows, :count].astype(float) @ (self.sensor[:, seen] * weights[:count]).T
+        more[self.light_rows] = self.colours - by_set_0
+        values = np.hstack([values, more.astype(np.float32)])
+        values[:CHANNELS, :CHANNELS] = np.eye(CHANNELS)
+        return Spectra(Table(values), None, float(self.first))

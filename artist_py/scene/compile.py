@@ -59,6 +59,7 @@ class CompiledScene:
     wavelength_range: tuple
     spectra: np.ndarray  # float32 (rows, bins), the dense table whatever the wavelength mode
     ior_rows: list
+    light_rows: list  # what is emitted
     space: Any
     matrices: tuple
     embree: Any  # keeps the BVH alive
@@ -145,6 +146,7 @@ def compile_scene(graph, threads=None):
         (first, last),
         dense,
         spectra.ior_rows,
+        spectra.light_rows,
         space,
         camera_matrices(graph.camera, graph.film),
         embree,

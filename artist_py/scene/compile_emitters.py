@@ -56,7 +56,7 @@ class EmitterCompiler:
             return
         rows["scale"], rows["two_sided"] = scale, emission.sides == "both"
         rows["visible"], rows["image"] = emission.visible, -1
-        rows["spectrum"] = self.spectra.row(table)
+        rows["spectrum"] = self.spectra.light_row(table)
         placed.emitter = self.count
         self.count += len(rows)
         sides = 2 if emission.sides == "both" else 1

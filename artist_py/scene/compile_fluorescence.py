@@ -1,11 +1,12 @@
 """What a scene that fluoresces needs: tables by bins of 1 nm, and where its sets of wavelengths lie (theory 3.5)."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from artist_py.errors import SceneError
-from artist_py.film.wavelengths import excitation_density, inverse_cdf, wavelength_density
+from artist_py.film.wavelengths import excitation_density, inverse_cdf, normalised, wavelength_density
 from artist_py.scene.compile_shifting import shifting_problem, shifts
 from artist_py.scene.graph import Fluorescent
 from artist_py.scene.where import problem
@@ -24,6 +25,15 @@ class FluorescentScene:
     )  # share of the power that is scattered at all, by where it arrives; float64 (materials, bins)
     shares: np.ndarray  # of the scene's light given off at other wavelengths; float64 (materials,)
     set_nodes: tuple  # inverse distribution of each set, nm
+    sensor: np.ndarray  # what the film's channels get per radiance and nm, float64 (3, bins)
+    means: (
+        np.ndarray
+    )  # weights of wavelengths, of sum 1, in what stands for all of them, per channel; (3, bins)
+
+    @cached_property
+    def colours(self):
+        """What the film's channels get of light at each wavelength by reradiation, (materials, 3, bins)."""
+        return self.sensor @ self.matrices
 
     @property
     def n_sets(self):
@@ -81,7 +91,10 @@ def fluorescent_scene(glows, sensor, light, first, n_sets):
     elastic = np.array([np.ones_like(light) if glow.is_coated else glow.reflectance for glow in glows])
     shares = (1.0 - FLAT) * _mean(yields, everywhere) + FLAT * yields.mean(axis=1)
     nodes = tuple(inverse_cdf(density, first) for density in densities)
-    return FluorescentScene(matrices, np.minimum(elastic + yields, 1.0), shares, nodes)
+    means = np.abs(sensor) * (matrices.mean(axis=0) @ everywhere)
+    means = np.array([normalised(*each) for each in zip(means, np.abs(sensor), strict=True)])
+    totals = np.minimum(elastic + yields, 1.0)
+    return FluorescentScene(matrices, totals, shares, nodes, sensor, means)
 
 
 def _mean(yields, light):

@@ -76,7 +76,7 @@ class LightCompiler:
     def _add(self, row, emitter, scale, extent):
         """Store spectrum and scale; returns the power, which is the integral over wavelength times `extent`."""
         table = tabulate(emitter.spectrum, self.spectra.first, self.spectra.last, "emission")
-        row["spectrum"], row["scale"] = self.spectra.row(table), scale
+        row["spectrum"], row["scale"] = self.spectra.light_row(table), scale
         self.light += scale * extent * table
         return scale * extent * integrate(table)
 
@@ -122,7 +122,7 @@ class LightCompiler:
     def _fill_image(self, row, emitter):
         texels = load_environment(emitter, self.warn)
         basis = rgb_basis(self.spectra.first, self.spectra.last, "emission")
-        row["spectrum"], row["green"], row["blue"] = (self.spectra.row(each) for each in basis)
+        row["spectrum"], row["green"], row["blue"] = (self.spectra.light_row(each) for each in basis)
         row["scale"] = emitter.scale
         weights = texels @ basis.sum(axis=1)
         row["image"] = self.images.add(texels, weights)

@@ -42,20 +42,26 @@ NEED_NAMES = {
 
 
 class SpectrumRows:
-    """The scene's spectra as rows of 1 nm bins over [first, last) nm; equal spectra share a row."""
+    """The scene's spectra as rows of 1 nm bins over [first, last) nm; equal ones of a kind share a row."""
 
     def __init__(self, first, last):
         self.first, self.last = first, last
-        self.rows, self.index, self.ior_rows = [], {}, []
+        self.rows, self.index, self.ior_rows, self.light_rows = [], {}, [], []
 
-    def row(self, table):
+    def row(self, table, is_light=False):
         """Row number of a table (bins,)."""
         table = np.ascontiguousarray(table, np.float64)
-        key = table.tobytes()
+        key = table.tobytes(), is_light
         if key not in self.index:
             self.index[key] = len(self.rows)
             self.rows.append(table)
         return self.index[key]
+
+    def light_row(self, table):
+        """Row number of what is emitted, which no property of a material shares (`CompiledScene.light_rows`)."""
+        row = self.row(table, is_light=True)
+        self.light_rows.append(row)
+        return row
 
     def ior_row(self, table):
         """Row number of a refractive index: between bin centres it is read linearly, not by bin."""

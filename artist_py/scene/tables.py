@@ -229,6 +229,18 @@ class Textures(NamedTuple):
     texels: Table | None  # uint16 (n,), see bsdf/reflectance.py; absent where no texture is an image
 
 
+class ColourControl(NamedTuple):
+    """What makes up for the chance in which wavelengths the film sees (theory 3.9), see bsdf/fluorescence.py."""
+
+    # Per row of `Fluorescence` and lane (j, c): of light at wavelength j of set 1, what reaches channel c of the film
+    # by all wavelengths less what does by those of set 0; float32 (rows, C 3).
+    table: Table
+    set: object  # Spectrum of C zeros
+    colour: object  # of 3
+    matrix: object  # of C 3
+    block: object  # of 3 3: what an eye subpath's matrix has after the rows of all wavelengths
+
+
 class Fluorescence(NamedTuple):
     """Reradiation between the sets of wavelengths of an iteration, a row per fluorescent material (theory 3.2).
 
@@ -241,8 +253,20 @@ class Fluorescence(NamedTuple):
     survival: (
         Table  # float64 (rows,): the most that is scattered of light at any of the wavelengths, at most 1
     )
-    zero: object  # Spectrum of M C zeros
-    matrix: object  # Spectrum of M C C lanes, with which eye subpaths start: 1 from each wavelength of set 0 to itself
+    zero: object  # Spectrum of zeros, of as many lanes as light has: M C, and 3 for the control
+    sets: object  # of M C zeros
+    rows: object  # of as many zeros as an eye subpath's matrix has for these
+    coefficients: object  # of C M C zeros
+    matrix: (
+        object  # Spectrum with which eye subpaths start: what the film sees of all lanes of light, per column
+    )
+    white: object  # Spectrum of light of radiance 1 at all wavelengths,
+    colour: object  # and of one that is the same to the film by its control alone
+    unit: object  # per column: 1 over what a path of throughput 1 brings it of that, for Russian roulette
+    ratio: (
+        object | None
+    )  # Spectrum: r of theory (2.6) where all wavelengths mix; absent where no density depends on it
+    control: ColourControl | None  # absent where columns are wavelengths
 
 
 class Redistribution(NamedTuple):

@@ -12,7 +12,7 @@ PROFILE_STEPS = 256  # samples of the filter per pixel
 
 
 def splat_dtype(lanes, with_technique=False):
-    """Layout of a splat of `lanes` wavelengths; `with_technique` adds what images of techniques need."""
+    """Layout of a splat of `lanes` wavelengths or channels; `with_technique` adds what images of techniques need."""
     technique = [("technique", "i4"), ("length", "i4"), ("weight", "f4")] if with_technique else []
     return np.dtype([("pixel", "i4"), ("value", "f4", lanes), *technique], align=True)
 
@@ -78,7 +78,7 @@ def store_splat(tables, pool, thread, record, pixel, value, technique, length, w
     pool.ends[thread, 0] = row + 1
     splat = pool.records[row]
     splat.pixel = pixel
-    for i in range(len(splat.value)):  # of several sets of wavelengths the first
+    for i in range(len(splat.value)):
         splat.value[i] = lane(value, i)
     _store_technique(tables, splat, technique, length, weight)
     record.n_splats += 1

@@ -4,14 +4,20 @@ import numpy as np
 import pytest
 
 from artist_py.core.sets import (
+    at_film,
     chosen,
+    diagonal,
     first_lanes,
     from_next_set,
     from_previous_set,
     given,
+    lanes_after,
+    placed,
     received,
     repeated,
     row_of,
+    tiled,
+    widened,
 )
 from artist_py.core.table import Table
 from artist_py.core.vector import Spectrum
@@ -79,3 +85,42 @@ def test_kernels_do_the_same(sets, count):
     for found, twin in zip(compiled(*inputs(sets, count)), everything(*inputs(sets, count)), strict=True):
         assert len(found.values) == len(twin.values)
         np.testing.assert_allclose(found.values, twin.values, rtol=1e-5)
+
+
+# --- what the control of colour needs -----------------------------------------------------------------------------
+
+
+def lanes_of_control(light, matrix, square, colour, wavelengths):
+    """All operations on a matrix of 7 rows, light of 7 lanes and 3 colours."""
+    return (
+        lanes_after(light, wavelengths, colour),
+        lanes_after(light, colour, wavelengths),
+        widened(wavelengths, light),
+        widened(light, light),
+        placed(colour, wavelengths, light),
+        tiled(colour, square),
+        diagonal(square, colour),
+        at_film(None, light),
+        at_film(matrix, light),
+    )
+
+
+def test_lanes_of_the_control():
+    light, matrix, square, colour, wavelengths = (
+        Spectrum(np.arange(1, size + 1)) for size in (7, 21, 9, 3, 4)
+    )
+    expected = (
+        [5, 6, 7],
+        [4, 5, 6, 7],
+        [1, 2, 3, 4, 0, 0, 0],
+        [1, 2, 3, 4, 5, 6, 7],
+        [0, 0, 0, 0, 1, 2, 3],
+        [1, 2, 3] * 3,
+        [1, 5, 9],
+        [1, 2, 3, 4, 5, 6, 7],
+        np.arange(1, 8) @ np.arange(1, 22).reshape(7, 3),
+    )
+    arguments = light, matrix, square, colour, wavelengths
+    for run in (lanes_of_control, kernel(lanes_of_control)):
+        for found, numbers in zip(run(*arguments), expected, strict=True):
+            np.testing.assert_array_equal(found.values, numbers)

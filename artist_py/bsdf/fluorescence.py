@@ -47,11 +47,11 @@ def reradiation_factor(fluorescence, needs, material, wo, wi):
         return 0.0
     if material.fluorescence < 0 or wo.z * wi.z <= 0.0 or is_black(needs.one_sided, material, wo):
         return 0.0
-    return INV_PI * _through_coat(needs.coated_dyes, material, wo, wi)
+    return INV_PI * through_coat(needs.coated_dyes, material, wo, wi)
 
 
 @function
-def _through_coat(needed, material, wo, wi):
+def through_coat(needed, material, wo, wi):
     """T(wo) T(wi) / T_m of the coat (plastic.py), 1 where there is none."""
     if needed is None:
         return 1.0

@@ -33,6 +33,13 @@ def colour_below(material, rho):
 
 
 @function
+def base_below(material, below):
+    """The reflectance of the base that has A = `below`."""
+    leaving = material.transmittance / (material.ior * material.ior)
+    return below / (below * (1.0 - leaving) + splat(below, leaving))
+
+
+@function
 def with_dyes(coated_dyes, material, below):
     """A, and what the base gives off at other wavelengths besides: what lobes are chosen by."""
     if coated_dyes is None:

@@ -21,7 +21,13 @@ from ..transport.mis import Partial, on_arrival, partial_after
 from ..transport.recording import LT
 from ..transport.roulette import brings_nothing, is_spent, local_survival, survived
 from ..transport.shares import is_chosen, is_vertex_wanted
-from ..transport.shifting import as_power, keep_wavelength, shifted_onwards, wavelengths_of_light
+from ..transport.shifting import (
+    as_power,
+    keep_wavelength,
+    shifted_onwards,
+    unless_mirrored,
+    wavelengths_of_light,
+)
 from ..transport.splats import choose_pixel, store_splat
 from ..transport.subpath import Path, go_straight, is_passed_through, scatter, vertex_at
 from ..transport.vertices import store_vertex
@@ -108,7 +114,9 @@ def _walk(  # noqa: C901 - one loop, a line or two per step of the walk
             break
         here = counts_at(scene, setup.method, counts, surface)
         arrived = wavelengths
-        vertex, wavelengths = shifted_onwards(scene.reemission, material, vertex, wavelengths, stream, length)
+        vertex, wavelengths = shifted_onwards(
+            scene.reemission, scene.needs, material, vertex, wavelengths, stream, length
+        )
         survival = local_survival(scene, vertex, wavelengths)
         pair = FIRST_VERTEX + (length - 1) * PAIRS_PER_VERTEX
         if not is_delta_bsdf(material):
@@ -123,7 +131,10 @@ def _walk(  # noqa: C901 - one loop, a line or two per step of the walk
         if is_spent(limits.ends_black, step.path):
             break
         partial = partial_after(here, partial, step, surface, survival, cos_in)
-        path = survived(step.path, survival)
+        wavelengths, path = (
+            unless_mirrored(scene.reemission, scene.needs, wavelengths, arrived, step.is_delta),
+            survived(step.path, survival),
+        )
         length += 1
     return Walk(black(wavelengths), rays, shadow_rays)
 

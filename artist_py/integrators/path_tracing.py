@@ -20,7 +20,7 @@ from ..transport.next_event import connect_to_emitter, radiance_of_background, r
 from ..transport.recording import HIT, NEE, Place, TechniqueTables, record
 from ..transport.roulette import Limits, after_roulette, is_ended_by_roulette, is_spent
 from ..transport.sensing import Sensing, store_sample, wavelengths_of_path
-from ..transport.shifting import shifted_back
+from ..transport.shifting import shifted_back, unless_mirrored
 from ..transport.subpath import go_straight, is_passed_through, scatter, start_path, vertex_at
 
 TILE = 32
@@ -157,14 +157,21 @@ def path_radiance(scene, limits, sensing, stream, origin, direction, media, plac
             break
         pair = FIRST_VERTEX + (length - 1) * PAIRS_PER_VERTEX
         vertex = vertex_at(scene, surface, path, wavelengths)
-        vertex, wavelengths = shifted_back(scene.excitation, material, vertex, wavelengths, stream, length)
+        arrived = wavelengths
+        vertex, wavelengths = shifted_back(
+            scene.excitation, scene.needs, material, vertex, wavelengths, stream, length
+        )
         u_select, u_lobe = choice_numbers(scene, stream, pair + CHOICE)
         if not is_delta_bsdf(material):
             direct = connect_to_emitter(scene, vertex, wavelengths, stream, pair + EMITTER, u_select)
             radiance = radiance + received(scene.fluorescence, path.throughput, direct.radiance)
             _record(techniques, scene, place, NEE, length + 1, length, path, direct)
             shadow_rays += direct.rays
-        path = scatter(scene, vertex, path, wavelengths, stream, pair + BSDF, u_lobe, None).path
+        step = scatter(scene, vertex, path, wavelengths, stream, pair + BSDF, u_lobe, None)
+        wavelengths, path = (
+            unless_mirrored(scene.excitation, scene.needs, wavelengths, arrived, step.is_delta),
+            step.path,
+        )
         length += 1
         if is_spent(limits.ends_black, path):
             break

@@ -3,10 +3,8 @@
 import numpy as np
 
 from artist_py.core.table import Table
-from artist_py.errors import SceneError
 from artist_py.scene import tables
 from artist_py.scene.messages import show
-from artist_py.scene.where import problem
 
 SHIFTING = {"pt": "independent", "ppm": "rotate"}  # `render.wavelengths` with which wavelengths shift
 
@@ -36,23 +34,12 @@ def shifting_problem(render):
 
 def with_shifting(render, scene, fluorescent, first):
     """`scene` with the tables by which wavelengths shift: for path tracing or for photon mapping."""
-    check_materials(render, scene.materials.array)
     matrices = fluorescent.matrices
     if render.integrator == "pt":
         return scene._replace(excitation=redistribution(matrices, first))
     emission = redistribution(matrices.transpose(0, 2, 1), first)
     nodes = Table(fluorescent.set_nodes[1])
     return scene._replace(reemission=tables.Reemission(emission, Table(matrices.astype(np.float32)), nodes))
-
-
-def check_materials(render, materials):
-    """Raise SceneError where a material is not a plain diffuse one that fluoresces."""
-    glows = materials["fluorescence"] >= 0
-    if np.any(materials["kind"][glows] != tables.DIFFUSE):
-        message = (
-            f'expected "shared", since a material fluoresces under a coat, found {show(render.wavelengths)}'
-        )
-        raise SceneError([problem(render, "wavelengths", message)])
 
 
 def redistribution(matrices, first):

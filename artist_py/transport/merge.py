@@ -121,7 +121,9 @@ def _merge(scene, method, counts, merging, photon, throughput, stored, survival,
     if not is_on_side(scene.needs.smooth_triangles, vertex.surface, direction, wi):
         return MergedPhoton(black(wavelengths), 0.0)
     f = evaluate_bsdf(scene.needs, material, vertex.reflectance, scene.spectra, wavelengths, vertex.wo, wi)
-    f = of_power(merging.matching, scene.reemission, material, photon, wavelengths, f)
+    f = of_power(
+        merging.matching, scene.reemission, scene.needs, material, photon, wavelengths, f, vertex.wo, wi
+    )
     weight = _weight(
         method.techniques.merge_once, scene, counts, photon, stored, material, wi, pdf, survival, wavelengths
     )

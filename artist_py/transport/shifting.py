@@ -8,7 +8,8 @@ what either would bring. Where a dye did it the wavelength is drawn anew: of an 
 is known, that of the excitation, in proportion to R(out, in) over `in`; of a light subpath that of the emission, in
 proportion to R(out, in) over `out` (Mojzik et al. 2018; theory 3.1). Either way the surface then scatters like a
 diffuse one whose reflectance is the sum of both parts, and the walk goes on as always. Of the several wavelengths of
-an eye subpath each shifts for itself: directions do not depend on it.
+an eye subpath each shifts for itself: directions do not depend on it. Under a clear coat (bsdf/plastic.py) the sum is
+that of what comes out again of light that has entered, and a walk that the coat mirrors leaves as it came.
 
 Light subpaths of different wavelengths meet eye subpaths by merges within a tolerance d. A photon is a power P at a
 wavelength l', and stands for a power per nm of P / w at all wavelengths l with |l - l'| <= d, where w is how much of
@@ -18,6 +19,8 @@ makes of a photon needs no tolerance: R(l, l') is evaluated as it stands.
 
 from typing import NamedTuple
 
+from ..bsdf.fluorescence import through_coat
+from ..bsdf.plastic import base_below, colour_below
 from ..core.rng import random_number, random_pair
 from ..core.spectra import ONE_MINUS
 from ..core.vector import lane, lane_count, with_lane
@@ -25,6 +28,7 @@ from ..core.warp import INV_PI
 from ..core.wavelengths import sample_wavelengths
 from ..emitters.environment import first_above
 from ..jit import function
+from ..scene.tables import PLASTIC
 from .subpath import Vertex
 
 WAVELENGTH = (
@@ -46,30 +50,30 @@ class Matching(NamedTuple):
 
 
 @function
-def shifted_back(excitation, material, vertex, wavelengths, stream, length):
+def shifted_back(excitation, needs, material, vertex, wavelengths, stream, length):
     """`(vertex, wavelengths)` of an eye subpath that is scattered at its vertex number `length`.
 
     The reflectance of the vertex is then that of the wavelengths it is left with, at which light arrives.
     """
     if excitation is None:
         return vertex, wavelengths
-    return _shifted(excitation, material, vertex, wavelengths, stream, length)
+    return _shifted(excitation, needs.coated_dyes, material, vertex, wavelengths, stream, length)
 
 
 @function
-def shifted_onwards(reemission, material, vertex, wavelengths, stream, length):
+def shifted_onwards(reemission, needs, material, vertex, wavelengths, stream, length):
     """The same of a light subpath: the wavelengths are those at which light leaves."""
     if reemission is None:
         return vertex, wavelengths
-    return _shifted(reemission.emission, material, vertex, wavelengths, stream, length)
+    return _shifted(reemission.emission, needs.coated_dyes, material, vertex, wavelengths, stream, length)
 
 
 @function
-def _shifted(redistribution, material, vertex, wavelengths, stream, length):
+def _shifted(redistribution, coated_dyes, material, vertex, wavelengths, stream, length):
     if material.fluorescence < 0:
         return vertex, wavelengths
     u = random_number(stream, SHIFT + length) if length > 1 else random_pair(stream, WAVELENGTH)[1]
-    count, reflectance = lane_count(wavelengths), vertex.reflectance
+    count, scattered = lane_count(wavelengths), _below_coat(coated_dyes, material, vertex.reflectance)
     for i in range(count):
         # Evenly spread over the lanes, and uniformly distributed in each.
         number = u + i / count
@@ -78,11 +82,43 @@ def _shifted(redistribution, material, vertex, wavelengths, stream, length):
             redistribution,
             material.fluorescence,
             float(lane(wavelengths, i)),
-            float(lane(reflectance, i)),
+            float(lane(scattered, i)),
             number,
         )
-        wavelengths, reflectance = with_lane(wavelengths, i, wavelength), with_lane(reflectance, i, total)
+        wavelengths, scattered = with_lane(wavelengths, i, wavelength), with_lane(scattered, i, total)
+    reflectance = _reflectance_of(coated_dyes, material, scattered)
     return Vertex(vertex.surface, vertex.frame, vertex.wo, vertex.is_sampled_back, reflectance), wavelengths
+
+
+@function
+def _below_coat(needed, material, reflectance):
+    """Share of the light that arrives, or that has entered the coat, that is scattered at its wavelength."""
+    if needed is None:
+        return reflectance
+    return colour_below(material, reflectance) if material.kind == PLASTIC else reflectance
+
+
+@function
+def _reflectance_of(needed, material, scattered):
+    """The reflectance of a material of which `_below_coat` says `scattered`."""
+    if needed is None:
+        return scattered
+    return base_below(material, scattered) if material.kind == PLASTIC else scattered
+
+
+@function
+def unless_mirrored(redistribution, needs, wavelengths, arrived, is_delta):
+    """The `wavelengths` of a vertex for the walk beyond it, or those it `arrived` with where the coat mirrored it."""
+    if redistribution is None:
+        return wavelengths
+    return _unless_mirrored(needs.coated_dyes, wavelengths, arrived, is_delta)
+
+
+@function
+def _unless_mirrored(needed, wavelengths, arrived, is_delta):
+    if needed is None:
+        return wavelengths
+    return arrived if is_delta else wavelengths
 
 
 @function
@@ -159,15 +195,15 @@ def _is_within(matching, photon, wavelength):
 
 
 @function
-def of_power(matching, reemission, material, photon, wavelengths, f):
+def of_power(matching, reemission, needs, material, photon, wavelengths, f, wo, wi):
     """`f` for the photon's throughput: itself, or per nm where that is a power at a wavelength of its own."""
     if matching is None:
         return f
-    return _of_power(matching, reemission, material, photon, wavelengths, f)
+    return _of_power(matching, reemission, needs, material, photon, wavelengths, f, wo, wi)
 
 
 @function
-def _of_power(matching, reemission, material, photon, wavelengths, f):
+def _of_power(matching, reemission, needs, material, photon, wavelengths, f, wo, wi):
     wavelength, tolerance = float(lane(wavelengths, 0)), matching.tolerance
     accepted = min(wavelength + tolerance, matching.last) - max(wavelength - tolerance, matching.first)
     f = f * (1.0 / accepted if _is_within(matching, photon, wavelength) else 0.0)
@@ -177,4 +213,5 @@ def _of_power(matching, reemission, material, photon, wavelengths, f):
         _bin_of(reemission.emission, wavelength),
         _bin_of(reemission.emission, float(photon.wavelength)),
     )
-    return f + with_lane(f, 0, INV_PI * reemission.matrix[material.fluorescence, out, into])
+    factor = INV_PI * through_coat(needs.coated_dyes, material, wo, wi)
+    return f + with_lane(f, 0, factor * reemission.matrix[material.fluorescence, out, into])

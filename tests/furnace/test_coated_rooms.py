@@ -21,12 +21,15 @@ from fluorescence import (
     assert_deviations_vanish,
     iteration_colours,
     iteration_images,
+    on_bins,
     on_sets,
 )
 from rendering import look, scene, shape
 from scipy import stats
+from test_shifting_wavelengths import blur
 
 from artist_py.core.fresnel import fresnel_dielectric
+from artist_py.samplers.wavelengths import tolerance_of
 from artist_py.scene.optics import diffuse_transmittance
 
 FALSE_ALARM = 1e-4
@@ -90,11 +93,15 @@ def below_coat(surfaces):
     return surfaces.scatter[0] + np.diag(rho * leaving / (1.0 - rho * (1.0 - leaving)) - rho)
 
 
-def radiance(surfaces, seen, edges):
-    """L (cosines, lanes) at the cosines `seen` by paths of up to so many edges."""
+def radiance(surfaces, seen, edges, seen_below=None):
+    """L (cosines, lanes) at the cosines `seen` by paths of up to so many edges.
+
+    `seen_below` is K where the path that is seen first gets below the coat, if it is another there.
+    """
     cosines, weights = quadrature()
     f_seen, f = reflected(seen)[:, None], reflected(cosines)[:, None]
     below, mean = below_coat(surfaces), diffuse_transmittance(IOR)
+    seen_below = below if seen_below is None else seen_below
     emission = surfaces.emission[0]
     part_seen, part = (
         np.broadcast_to(emission, (len(seen), len(emission))),
@@ -102,18 +109,23 @@ def radiance(surfaces, seen, edges):
     )
     total = part_seen.copy()
     for _ in range(edges - 1):
-        leaving = below @ (weights @ ((1.0 - f) * part)) / mean
-        part_seen, part = f_seen * part_seen + (1.0 - f_seen) * leaving, f * part + (1.0 - f) * leaving
+        arriving = weights @ ((1.0 - f) * part) / mean
+        part_seen = f_seen * part_seen + (1.0 - f_seen) * (seen_below @ arriving)
+        part = f * part + (1.0 - f) * (below @ arriving)
         total += part_seen
     return total
 
 
 def room_colour(compiled, iteration):
     """RGB of the image of `painted_room` at the wavelengths of an iteration (3,)."""
-    surfaces = on_sets(compiled, iteration)
+    return image_colour(compiled, on_sets(compiled, iteration))
+
+
+def image_colour(compiled, surfaces, seen_below=None):
+    """RGB of the image of `painted_room` at the wavelengths of `surfaces` (3,)."""
     seen, count = np.unique(np.round(seen_cosines(), 9), return_counts=True)
-    edges = compiled.graph.render.max_path_length
-    return surfaces.response @ np.average(radiance(surfaces, seen, edges), axis=0, weights=count)
+    light = radiance(surfaces, seen, compiled.graph.render.max_path_length, seen_below)
+    return surfaces.response @ np.average(light, axis=0, weights=count)
 
 
 def test_all_paths_bring_the_closed_form():
@@ -144,7 +156,43 @@ def test_limited_length(edges):
     assert_deviations_vanish(iteration_colours(compiled, ITERATIONS), expected, PRECISION["pt"])
 
 
-def still_life(integrator, *more):
+# --- wavelengths that shift ---------------------------------------------------------------------------------------
+
+
+def assert_shifting_agrees(compiled, expected, precision, iterations):
+    """Images of iterations, whose paths have wavelengths of their own, have the expectations (iterations, 3)."""
+    assert_deviations_vanish(
+        iteration_colours(compiled, iterations), np.broadcast_to(expected, (iterations, 3)), precision
+    )
+
+
+@pytest.mark.parametrize(
+    ("heroes", "precision"), [(4, 1.5e-3), pytest.param(1, 4e-3, marks=pytest.mark.slow)]
+)
+@pytest.mark.parametrize("edges", [2, EDGES])
+def test_path_tracing_by_shifting_wavelengths(edges, heroes, precision):
+    """What the coat mirrors leaves at the wavelengths it came with, what has been below it at others."""
+    compiled = painted_room("pt", wavelengths="independent", hero_count=heroes, max_path_length=edges)
+    assert_shifting_agrees(compiled, image_colour(compiled, on_bins(compiled)), precision, 400)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("edges", [2, EDGES])
+def test_photon_mapping_by_shifting_wavelengths(edges):
+    """A merge within a tolerance blurs what the base reflects where it is seen, and nothing else."""
+    merging = {"radius": 0.02, "alpha": 1, "light_paths": 4, "wavelength_tolerance": 50}
+    compiled = painted_room("ppm", wavelengths="rotate", hero_count=1, max_path_length=edges, merging=merging)
+    surfaces, tolerance = on_bins(compiled), tolerance_of(compiled.graph.render.merging, 0)
+    below = below_coat(surfaces)
+    elastic = np.diag(below)
+    seen_below = below - np.diag(elastic) + elastic[:, None] * blur(len(below), tolerance)
+    assert_shifting_agrees(compiled, image_colour(compiled, surfaces, seen_below), 8e-3, 400)
+
+
+# --- several materials --------------------------------------------------------------------------------------------
+
+
+def still_life(integrator, *more, **render):
     """Two coated balls, of a dark dye and of two dyes, in a coated room with a small lamp; and `more` shapes."""
     dark = {"type": "fluorescent", "absorption": {"gaussian": [420, 40], "peak": 0.95}, "coat_ior": 1.8}
     dark["emission"] = {"gaussian": [540, 25]}
@@ -164,14 +212,15 @@ def still_life(integrator, *more):
             "wavelength_range": RANGE,
             "max_path_length": 5,
             "merging": {"radius": 0.01, "light_paths": 1},
+            **render,
         },
     )
 
 
-def parts(compiled):
+def parts(compiled, iterations=ITERATIONS):
     """Means over 4 x 4 parts of the image of each iteration, (iterations, 16, 3)."""
-    images = iteration_images(compiled, ITERATIONS)
-    return images.reshape(ITERATIONS, 4, 16, 4, 16, 3).mean(axis=(2, 4)).reshape(ITERATIONS, 16, 3)
+    images = iteration_images(compiled, iterations)
+    return images.reshape(iterations, 4, 16, 4, 16, 3).mean(axis=(2, 4)).reshape(iterations, 16, 3)
 
 
 def assert_same_parts(found, expected, kernel_bias, precision):
@@ -202,3 +251,17 @@ def test_integrators_agree_through_glass():
     ball = shape("sphere", "flint", center=[0.1, -0.3, -0.1], radius=0.4)
     images = [parts(still_life(integrator, ball)) for integrator in ("pt", "bpt")]
     assert_same_parts(images[1], images[0], 0.0, 0.02)
+
+
+@pytest.mark.slow
+def test_shifting_wavelengths_agree():
+    """Path tracing by wavelengths of each path: no noise of colours is shared, and more iterations are needed."""
+    iterations = 1024
+    shared = parts(still_life("pt"), iterations)
+    shifting = parts(still_life("pt", wavelengths="independent"), iterations)
+    size = shared.mean()
+    difference = shifting.mean(axis=0) - shared.mean(axis=0)
+    error = np.sqrt((shared.var(axis=0, ddof=1) + shifting.var(axis=0, ddof=1)) / iterations)
+    assert np.median(error) < 0.05 * size
+    limit = stats.t.ppf(1.0 - FALSE_ALARM / (2 * difference.size), iterations - 1) * error
+    assert (np.abs(difference) < limit).all()

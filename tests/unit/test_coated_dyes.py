@@ -1,5 +1,7 @@
 """Dyes under a clear coat: the light that the coat keeps inside, what comes out of it, and what lobes are chosen by."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from fluorescence import CASCADE, ORANGE, RANGE
@@ -8,6 +10,7 @@ from scipy import integrate
 
 from artist_py.bsdf.dispatch import evaluate_bsdf, pdf_bsdf
 from artist_py.bsdf.fluorescence import albedo_under_white, reradiation_factor
+from artist_py.bsdf.plastic import base_below, colour_below
 from artist_py.core.fresnel import fresnel_dielectric
 from artist_py.core.table import Table
 from artist_py.core.vector import Spectrum, Vec3
@@ -46,6 +49,14 @@ def test_light_meets_the_base_again_and_again(ior):
         part = inside * part
     elastic = (1.0 - inside) * reflectance / (1.0 - inside * reflectance)
     np.testing.assert_allclose(under_coat(reflectance, matrix, ior), leaving - np.diag(elastic), atol=1e-12)
+
+
+@pytest.mark.parametrize("ior", INDICES)
+def test_a_base_of_the_colour_that_is_seen(ior):
+    """A base that is to be seen in some colour through the coat, even one that gives off more than it receives."""
+    coat = SimpleNamespace(transmittance=diffuse_transmittance(ior), ior=ior)
+    below = Spectrum([0.0, 0.3, 0.99, 1.7])
+    np.testing.assert_allclose(colour_below(coat, base_below(coat, below)).values, below.values, rtol=2e-4)
 
 
 @pytest.mark.parametrize("ior", INDICES)

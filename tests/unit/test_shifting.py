@@ -9,15 +9,16 @@ import numpy as np
 import pytest
 
 from artist_py.core.table import Table
-from artist_py.core.vector import Spectrum
+from artist_py.core.vector import Spectrum, Vec3
 from artist_py.core.warp import INV_PI
 from artist_py.samplers.wavelengths import tolerance_of
 from artist_py.scene.compile_shifting import redistribution
 from artist_py.scene.graph import Merging
-from artist_py.scene.tables import Reemission
+from artist_py.scene.tables import Needs, Reemission
 from artist_py.transport.shifting import Matching, is_unmatched, of_power, redistributed
 
 FIRST, BINS = 400, 12
+NEEDS, UP = Needs(), Vec3([0.0, 0.0, 1.0])
 STEPS = 20_000
 NUMBERS = (np.arange(STEPS) + 0.5) / STEPS
 
@@ -71,7 +72,10 @@ def test_a_constant_spectrum_is_kept(tolerance, wavelength):
     plain, lane = SimpleNamespace(fluorescence=-1), Spectrum([wavelength])
     f, (all_photons, power) = Spectrum([0.2]), photons()
     accepted = [photon for photon in all_photons if not is_unmatched(matching, plain, photon, lane)]
-    total = sum(float(of_power(matching, None, plain, photon, lane, f).values[0]) for photon in accepted)
+    total = sum(
+        float(of_power(matching, None, NEEDS, plain, photon, lane, f, UP, UP).values[0])
+        for photon in accepted
+    )
     assert total * power == pytest.approx(0.2, rel=3e-3)
     rejected = [photon for photon in all_photons if is_unmatched(matching, plain, photon, lane)]
     assert all(abs(photon.wavelength - wavelength) > tolerance for photon in rejected)
@@ -85,7 +89,10 @@ def test_a_dye_takes_photons_of_all_wavelengths():
     )
     dye, lane, (all_photons, power) = SimpleNamespace(fluorescence=1), Spectrum([408.5]), photons()
     assert not any(is_unmatched(matching, dye, photon, lane) for photon in all_photons)
-    values = [of_power(matching, reemission, dye, photon, lane, Spectrum([0.2])) for photon in all_photons]
+    values = [
+        of_power(matching, reemission, NEEDS, dye, photon, lane, Spectrum([0.2]), UP, UP)
+        for photon in all_photons
+    ]
     expected = 0.2 + INV_PI * matrices()[1, 8].sum()
     assert sum(float(value.values[0]) for value in values) * power == pytest.approx(expected, rel=3e-3)
 

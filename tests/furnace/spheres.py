@@ -143,6 +143,18 @@ def visible_patches(compiled, subsamples=48):
 
     Where a square begins is exact; only the shares of pixels that an edge crosses are rounded, to 1 / subsamples.
     """
+    hit = visible_points(compiled, subsamples)
+    u = np.arctan2(hit[..., 1], hit[..., 0]) / (2 * math.pi) % 1.0
+    v = np.arccos(np.clip(-hit[..., 2], -1, 1)) / math.pi
+    light = pixel_means((np.floor(u * 8) + np.floor(v * 16)) % 2, subsamples)
+    return np.stack([1 - light, light], axis=-1)
+
+
+def visible_points(compiled, subsamples):
+    """Where rays through `subsamples` x `subsamples` points of each pixel meet the sphere, in radii of the sphere.
+
+    (h subsamples, w subsamples, 3); the sphere is the first shape of a material.
+    """
     height, width = compiled.graph.film.resolution[::-1]
     camera = compiled.graph.camera
     x, y = np.meshgrid(*((np.arange(n * subsamples) + 0.5) / subsamples for n in (width, height)))
@@ -152,14 +164,16 @@ def visible_patches(compiled, subsamples=48):
     up = np.cross(right, forward)
     forward, right, up = (axis / np.linalg.norm(axis) for axis in (forward, right, up))
     reach = math.tan(math.radians(0.5 * camera.field_of_view)) / min(width, height)
-    aside, above = reach * (2 * x - width).reshape(-1, 1), reach * (height - 2 * y).reshape(-1, 1)
+    aside, above = reach * (2 * x - width)[..., None], reach * (height - 2 * y)[..., None]
     direction = forward + aside * right + above * up
-    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+    direction /= np.linalg.norm(direction, axis=-1, keepdims=True)
     radius = next(each for each in compiled.graph.shapes if each.material).radius
     along = direction @ origin
-    hit = origin + direction * (np.sqrt(along**2 - origin @ origin + radius**2) - along)[:, None]
-    u = np.arctan2(hit[:, 1], hit[:, 0]) / (2 * math.pi) % 1.0
-    v = np.arccos(np.clip(-hit[:, 2] / radius, -1, 1)) / math.pi
-    light = ((np.floor(u * 8) + np.floor(v * 16)) % 2).reshape(height, subsamples, width, subsamples)
-    light = light.mean(axis=(1, 3))
-    return np.stack([1 - light, light], axis=-1)
+    reached = np.sqrt(along**2 - origin @ origin + radius**2) - along
+    return (origin + direction * reached[..., None]) / radius
+
+
+def pixel_means(values, subsamples):
+    """Means over the pixels of values at `visible_points`, (h, w)."""
+    height, width = (n // subsamples for n in values.shape)
+    return values.reshape(height, subsamples, width, subsamples).mean(axis=(1, 3))

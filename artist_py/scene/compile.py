@@ -15,9 +15,12 @@ from artist_py.scene import tables
 from artist_py.scene.compile_camera import camera_matrices, compile_camera, compile_filter
 from artist_py.scene.compile_emitters import EmitterCompiler
 from artist_py.scene.compile_fluorescence import (
+    SETS,
     FluorescentScene,
     fluorescent_scene,
     fluoresces,
+    loss_with,
+    with_enough_sets,
     with_fluorescent_wavelengths,
 )
 from artist_py.scene.compile_geometry import GeometryCompiler, collect_parts, space_of
@@ -100,7 +103,7 @@ def compile_scene(graph, threads=None):
     media = materials.media_table() if _dielectrics_touch(geometry, placements, materials.table) else None
     emitter_table = emitters.table()
     fluorescent = fluorescent_scene(
-        materials.glows, sensor, emitters.light, first, graph.render.wavelength_sets
+        materials.glows, sensor, emitters.light, first, graph.render.wavelength_sets or SETS
     )
     if fluorescent is not None:
         glowing = materials.table["fluorescence"] >= 0
@@ -130,12 +133,15 @@ def compile_scene(graph, threads=None):
     scene, camera = _with_camera_media(scene, camera, materials)
     if scene.needs.media and scene.emitters is not None:
         emitters.place_in_media(scene)
-    geometry.warnings += method_warnings(graph.render.integrator, scene)
-    if not emitters.light.any():
-        geometry.warnings.append(f"nothing emits light from {first} to {last} nm: the image will be black")
+    geometry.warnings += method_warnings(graph.render.integrator, scene) + _darkness(
+        emitters.light, first, last
+    )
     nodes = inverse_cdf(wavelength_density(sensor, emitters.light), first)
     if is_fluorescent and shifts(graph.render):
         scene, nodes = with_shifting(graph.render, scene, fluorescent, first), fluorescent.set_nodes[0]
+    elif is_fluorescent:
+        loss_at = loss_with(graph, scene, camera, fluorescent, emitters.light, dense)
+        graph, fluorescent = with_enough_sets(graph, fluorescent, loss_at, geometry.warnings.append)
     return CompiledScene(
         graph,
         scene,
@@ -158,6 +164,10 @@ def compile_scene(graph, threads=None):
 
 def _file_of(graph):
     return graph.where.source.file if graph.where else None
+
+
+def _darkness(light, first, last):
+    return [] if light.any() else [f"nothing emits light from {first} to {last} nm: the image will be black"]
 
 
 def validate(graph):

@@ -215,9 +215,9 @@ class Render(Node):
     wavelength_range: tuple[int, int] | None = key(
         numbers(2, "[first, last]", Number(at_least=300, at_most=830, whole=True)), None
     )  # nm; default: 380 to 780, or from 300 where the scene needs it
-    wavelength_sets: int = key(
-        Number(at_least=1, at_most=4, whole=True), 3
-    )  # of shared wavelengths, where materials fluoresce
+    wavelength_sets: int | None = key(
+        Number(at_least=1, at_most=4, whole=True), None
+    )  # of shared wavelengths, where materials fluoresce; default: 3, or 4 where 3 would lose light
     sampler: str = key(Choice(("sobol", "independent")), "sobol")
     heuristic: str = key(Choice(("balance", "power")), "balance")  # of bidirectional methods; power: beta = 2
     samples: Samples = key(Table(Samples), Samples())

@@ -16,6 +16,7 @@ import numpy as np
 from rendering import with_render
 
 import artist_py
+from artist_py import load_scene
 from artist_py.compare.z_test import Moments, student_tail, symmetric_tail, z_test
 from artist_py.evidence.reference import block_means
 from artist_py.film.reading import read_image
@@ -65,12 +66,14 @@ CASES = (
     Case("depth_of_field", "bpt", 4, ONE_WAVELENGTH),
     Case("veach_room", "bpt", 4, ONE_WAVELENGTH),
     Case("fluorescent_room", "bpt", 8),
+    Case("cascade", "bpt", 16),  # the kernels are those of fluorescent_room
     Case("box_spheres", "ppm", 4, ONE_WAVELENGTH),
     Case("small_light", "ppm", 4, ONE_WAVELENGTH, is_slow=True),
     Case("cornell_grooved", "bpm", 4, ONE_WAVELENGTH),
     Case("spotlights", "bpm", 4, ONE_WAVELENGTH),
     Case("glass_sphere", "vcm", 16),
-    Case("highlighters", "vcm", 8),
+    Case("black_light", "vcm", 8),
+    Case("highlighters", "vcm", 8, is_slow=True),
     Case("ball_in_ball", "vcm", 4, ONE_WAVELENGTH, is_slow=True),
     Case("box_glossy", "vcm", 4, ONE_WAVELENGTH),
     Case("cone_caustic", "vcm", 4, ONE_WAVELENGTH, is_slow=True),
@@ -114,7 +117,7 @@ def replicates(case, first_seed, count):
     overrides = {"film.resolution": [SIZE, SIZE], "render.integrator": case.integrator, **dict(case.settings)}
     if case.integrator in ("ppm", "bpm", "vcm"):
         overrides["render.wavelengths"] = "shared"
-    compiled = artist_py.load_scene(ROOT / "scenes" / f"{case.scene}.toml", overrides)
+    compiled = load_scene(ROOT / "scenes" / f"{case.scene}.toml", overrides)
     for seed in range(first_seed, first_seed + count):
         film = artist_py.render(with_render(compiled, seed=seed), iterations=case.iterations, threads=1).film
         assert film.rejected_count == 0

@@ -128,6 +128,9 @@ def _print(matrix, seconds):
             Text(case.name), Text(str(case.expect)), *(Text(t, STYLES.get(s, "red")) for s, t in cells)
         )
     console.print(table)
+    for case in matrix.cases:
+        if not case.integrators:
+            click.echo(f"{case.name}: left out: {next(iter(case.left_out.values()))}")
     for case, name, verdict in matrix.faults():
         click.echo(f"{case.name}, {name}: {verdict.status}: {verdict.text}")
     click.echo(f"{matrix.summary} ({seconds:.0f} s)")

@@ -8,8 +8,13 @@ from artist_py.stress.scenes import SIZE
 
 # The most robust one first: the others are compared with it.
 INTEGRATORS = ("vcm", "pt", "lt", "bpt", "ppm", "bpm")
-MANY = 64  # light paths per pixel, the most there may be
+MANY = 64  # light paths per pixel where nothing but photons brings light
 MERGES_ALONE = dict.fromkeys(("ppm", "bpm"), 0.02)
+BLURRED = 5e-3
+MERGING_BLURS = (
+    "Merging blurs light and misses photons beyond edges: half a per cent is allowed for where it is one of many "
+    "techniques, and two more where it is alone."
+)
 
 
 def own_case(path):
@@ -22,9 +27,8 @@ def own_case(path):
         SameAs("vcm", bias=MERGES_ALONE),
         integrators=INTEGRATORS,
         precision=0.02,
-        rounding=5e-3,
-        why="Merging blurs light and misses photons beyond edges: half a per cent is allowed for where it is one of "
-        "many techniques, and two more where it is alone.",
+        rounding=BLURRED,
+        why=MERGING_BLURS,
     )
 
 

@@ -15,6 +15,8 @@ from artist_py.errors import SceneError
 from artist_py.scene.reader import read_scene_text
 from artist_py.stress import cases, runner
 from artist_py.stress.case import ALL, Case, Radiance, Refusal
+from artist_py.stress.cases import gallery
+from artist_py.stress.cases.gallery import gallery_case
 from artist_py.stress.measure import BATCHES, Measurement, graph_of, scene_text
 from artist_py.stress.own import own_case
 from artist_py.stress.scenes import furnace
@@ -22,6 +24,7 @@ from artist_py.stress.scenes import furnace
 # As tests/furnace/test_closed_rooms.py has them, so that they share their kernels.
 SMALL = furnace(aside=None, film={"resolution": [8, 8]})
 RIGHT = Case("right", "A furnace.", SMALL, Radiance(1.0), integrators=("pt",))
+FLUORESCENT = ["fluorescent_spheres", "fluorescent_room", "black_light", "cascade", "highlighters"]
 TOO_BRIGHT = dataclasses.replace(RIGHT, name="too-bright", expect=Radiance(1.2))
 
 
@@ -140,6 +143,28 @@ def test_own_scenes_are_rendered_small(tmp_path):
     assert (pt.render.merging.light_paths, ppm.render.merging.light_paths) == (4, 64)
 
 
+def test_scenes_that_are_not_installed_are_said_to_be_left_out(run, tmp_path):
+    """Without the folder of scenes nothing is rendered, and nothing is silent."""
+    absent = gallery_case("cascade", "Two dyes.", tmp_path)
+    code, out = run(RIGHT, absent)
+    assert code == 0
+    assert f"cascade: left out: {tmp_path / 'cascade.toml'} is not there" in out
+    assert "all 1 cells are right" in out
+    code, out = run(absent)
+    assert code == 1
+    assert "left out" in out
+
+
+def test_scenes_of_the_gallery_are_rendered_small(tmp_path):
+    """By all integrators, at all of the sets of wavelengths that they have by default."""
+    assert [case.name for case in gallery.CASES] == FLUORESCENT
+    for case in gallery.CASES:
+        assert case.quick and case.integrators == ALL
+        graph = graph_of(case, "vcm", 1, tmp_path)
+        assert max(graph.film.resolution) == 16
+        assert graph.render.wavelength_sets is None
+
+
 def test_list(capsys):
     """Everything is in the full list, and most in the quick one."""
     assert main(["stress", "--list", "--full"]) == 0
@@ -151,7 +176,7 @@ def test_list(capsys):
     assert len(quick.splitlines()) > 80
 
 
-def test_cases_are_well_formed():
+def test_cases_are_well_formed(tmp_path):
     """Names are unique, biases have reasons, and of the quick ones only what must be refused is."""
     names = [case.name for case in cases.CASES]
     assert len(set(names)) == len(names)
@@ -162,7 +187,7 @@ def test_cases_are_well_formed():
         )
         assert set(case.left_out) <= set(ALL), case.name
         if case.quick and not isinstance(case.expect, Refusal):
-            read_scene_text(scene_text(case, case.integrators[0], 1), case.name)
+            graph_of(case, case.integrators[0], 1, tmp_path)
 
 
 def test_refused_scenes_are_refused_for_the_reason_given():

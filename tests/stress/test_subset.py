@@ -1,6 +1,9 @@
 """A few of the extreme scenes with the simplest and the most complete integrator, by the command itself."""
 
+import pytest
+
 from artist_py.cli.main import main
+from artist_py.stress.cases import gallery
 
 CASES = (
     "lamp-1e-6",
@@ -31,3 +34,13 @@ def test_light_paths_that_are_not_whole(capsys):
     """Two or three per iteration: the third may not be lost, and none of an earlier iteration stay."""
     code = main(["stress", "--only", "light-paths-0.01", "--integrator", "bpm"])
     assert code == 0, capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_fluorescent_scenes(capsys):
+    """Those of the gallery, by path tracing and by all techniques together."""
+    options = [part for case in gallery.CASES for part in ("--only", case.name)]
+    code = main(["stress", *options, "--integrator", "pt", "--integrator", "vcm"])
+    out = capsys.readouterr().out
+    assert code == 0, out
+    assert f"all {2 * len(gallery.CASES)} cells are right" in out

@@ -3,6 +3,7 @@
 from artist_py.stress.cases import (
     camera,
     fluorescence,
+    gallery,
     geometry,
     glass,
     lights,
@@ -23,5 +24,6 @@ CASES = (
     *camera.CASES,
     *spectra.CASES,
     *fluorescence.CASES,
+    *gallery.CASES,
     *nothing.CASES,
 )

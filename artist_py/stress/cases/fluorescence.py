@@ -44,6 +44,7 @@ CASES = (
         precision=0.03,
         least=1024,  # some sets of wavelengths bring many times the mean, and 16 iterations seldom see one
         why="More events than sets of wavelengths have a bias, the same for all integrators.",
+        warning="fluorescent events in a row",
     ),
     glowing(
         "noisy-matrix",

@@ -122,7 +122,7 @@ def _words(found, render):
     advice = f"; try {' and '.join(ways)}" if ways else ""
     off = "too dark" if found.wrong < 0.0 else "too bright"
     return (
-        f"the image will be some {abs(found.wrong):.0%} {off}: {found.share:.0%} of its light is that of {sets} or "
+        f"the image may be up to {abs(found.wrong):.0%} {off}: {found.share:.0%} of its light is that of {sets} or "
         f"more fluorescent events in a row, and {sets} sets of wavelengths are exact for fewer{advice}"
     )
 

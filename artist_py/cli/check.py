@@ -12,8 +12,8 @@ BAD_SCENE = 2
 def command(scenes):
     """Say what is wrong with scenes.
 
-    Reads each SCENE with its meshes and spectra, and prints all that is wrong with it. The exit code is 2 if
-    anything is.
+    Reads each SCENE with its meshes and spectra, and prints all that is wrong with it, and what to be warned of. The
+    exit code is 2 if anything is wrong.
     """
     problems = [problem for scene in scenes for problem in _problems(scene)]
     for problem in problems:
@@ -26,8 +26,10 @@ def _problems(scene):
     from artist_py.scene.reader import read_scene
 
     try:
-        validate(read_scene(scene))
+        warnings = validate(read_scene(scene))
     except SceneError as error:
         return error.problems
+    for text in warnings:
+        click.echo(f"{scene}: warning: {text}")
     click.echo(f"{scene}: ok")
     return ()

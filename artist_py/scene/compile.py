@@ -171,8 +171,8 @@ def _darkness(light, first, last):
 
 
 def validate(graph):
-    """Find every problem that only loading shows, without building anything to render."""
-    compile_scene(graph)
+    """Find every problem that only loading shows, without rendering anything; the warnings there are."""
+    return compile_scene(graph).warnings
 
 
 def _lights_and_materials(graph, geometry, spectra):

@@ -40,9 +40,10 @@ def compile_scene(graph, threads=None):
 
 
 def validate(graph):
-    """Find fault with scenes of seed 666, as loading a mesh might."""
+    """Find fault with scenes of seed 666, as loading a mesh might, and warn of seed 13."""
     if graph.render.seed == 666:
         raise SceneError([Problem("a mesh is missing", "mesh.ply"), Problem("so is another", "other.ply")])
+    return ["it will be black"] if graph.render.seed == 13 else []
 
 
 def describe(compiled, memory):

@@ -34,6 +34,12 @@ class TestCheck:
         assert main(["check", "scene.toml"]) == 0
         assert capsys.readouterr().out == "scene.toml: ok\n"
 
+    def test_warnings(self, folder, edit, capsys):
+        """They are told, and change nothing."""
+        edit("[render]", "[render]\nseed = 13", "dark.toml")
+        assert main(["check", "dark.toml"]) == 0
+        assert capsys.readouterr().out == "dark.toml: warning: it will be black\ndark.toml: ok\n"
+
 
 class TestInfo:
     """`artist info`."""

@@ -1,10 +1,14 @@
 """Lets tests import `rendering`, which those of several folders share."""
 
+import gc
 import os
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
+
+# Compiling makes many objects that stay: to look for garbage among them all so often takes a tenth of its time.
+gc.set_threshold(200_000, 50, 100)
 
 # Without compilation there are no kernels to render with, and no callbacks for exact shapes.
 if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0":

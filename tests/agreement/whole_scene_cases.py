@@ -20,6 +20,9 @@ HIDDEN_LAMP = "hits the lamp in the hood too rarely for the variance to be known
 NONE = MappingProxyType({})
 ALL = frozenset({"pt", "lt", "ppm", "bpm", "vcm"})
 MERGING_ALONE = frozenset({"ppm", "bpm"})  # vcm merges as they do, and they need the most light paths
+ALWAYS_SLOW = frozenset(
+    {"bpm"}
+)  # it merges at all vertices, as vcm does, and weighs nothing else: closed forms show it
 
 
 class Case(NamedTuple):

@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 from rendering import shape
 from scipy import stats
-from whole_scene_cases import CASES, SCENES
+from whole_scene_cases import ALWAYS_SLOW, CASES, SCENES
 
 import artist_py
 from artist_py.film.accumulation import Film
@@ -192,7 +192,7 @@ def assert_agrees(renders, name, integrator):
 def names_for(integrator):
     """Parameters: the cases that an integrator is compared in."""
     return [
-        pytest.param(name, marks=pytest.mark.slow if integrator in case.slow else ())
+        pytest.param(name, marks=pytest.mark.slow if integrator in case.slow | ALWAYS_SLOW else ())
         for name, case in CASES.items()
         if integrator not in case.left_out
     ]

@@ -23,6 +23,7 @@ from scipy import stats
 from artist_py.cameras.perspective import camera_ray
 from artist_py.film.filters import FILTERS, evaluate_filter
 
+WHITE = {"white": diffuse(0.8)}
 LAMP = shape("rectangle", corner=[-1, 2, -1], edges=[[2, 0, 0], [0, 0, 2]], emission=1)
 VIEWS = {
     "along y": look([0, 0, 0], [0, 1, 0], 45),
@@ -94,8 +95,12 @@ def blurs(distance, camera, seeds=range(1, 13)):
     lamp = shape(
         "rectangle", corner=[-size / 2, distance, -size / 2], edges=[[size, 0, 0], [0, 0, size]], emission=1
     )
-    far = shape("rectangle", corner=[0, 40, 0], edges=[[1, 0, 0], [0, 0, 1]], emission=0)
-    compiled = scene([lamp, far], camera=camera, film={"resolution": [64, 64]})
+    # What is far and hardly reflects makes the scene large, and has a material as other scenes have that share kernels.
+    far = shape("rectangle", "white", corner=[0, 40, 0], edges=[[1, 0, 0], [0, 0, 1]], emission=0)
+    camera_path = {"max_path_length": 1}
+    compiled = scene(
+        [lamp, far], materials=WHITE, camera=camera, film={"resolution": [64, 64]}, render=camera_path
+    )
     images = np.array([radiance(with_render(compiled, seed=seed), 48).mean for seed in seeds])
     offset = np.arange(64) - 31.5
     squares = offset[:, None] ** 2 + offset**2
@@ -142,7 +147,7 @@ def seen_from(distance):
     fov = 2 * math.degrees(math.atan(0.9 / distance))
     return scene(
         STAGE,
-        materials={"white": diffuse(0.8), "grey": diffuse(0.2)},
+        materials={**WHITE, "grey": diffuse(0.2)},
         camera=look([0, 0, distance], [0, 0, 0], fov),
         film={"resolution": [32, 32]},
         render={"seed": int(distance), "max_path_length": 3},
@@ -164,15 +169,16 @@ def test_image_of_an_edge(name):
     """Column by column the integral of the filter; beside an edge, Mitchell's lobes go below zero."""
     size, edge = 16, 7.65
     wall = shape("rectangle", corner=[0, 10, -9], edges=[[9, 0, 0], [0, 0, 18]], emission=1)
-    far = shape("rectangle", corner=[-9, 10, -9], edges=[[1, 0, 0], [0, 0, 1]], emission=0)
+    far = shape("rectangle", "white", corner=[-9, 10, -9], edges=[[1, 0, 0], [0, 0, 1]], emission=0)
     # So that the lamp's edge at x = 0 lies `edge` pixels from the left.
     pixel = 2 * math.tan(math.radians(15)) / size
     shift = 10 * pixel * (size / 2 - edge)
     compiled = scene(
         [wall, far],
+        materials=WHITE,
         camera=look([shift, 0, 0], [shift, 10, 0], 30),
         film={"resolution": [size, size], "filter": name},
-        render={"sampler": "sobol"},
+        render={"sampler": "sobol", "max_path_length": 1},
     )
     image = radiance(compiled, 512).mean
     radius = compiled.graph.film.filter_radius

@@ -70,9 +70,13 @@ def test_a_point_in_a_mirror(integrator):
     assert np.all(image.mean[distance < blur - pixel] > 0.0)
 
 
-def test_nothing_else_finds_it():
-    """The path tracer sees nothing; of the techniques of light tracing, lens hits see all."""
+@pytest.mark.slow
+def test_the_path_tracer_does_not_find_it():
     assert not radiance(seen_in_mirror("pt"), 4).mean.any()
+
+
+def test_nothing_else_finds_it():
+    """Of the techniques of light tracing, lens hits see all."""
     images = render(seen_in_mirror("lt"), 16, techniques=True).techniques
     lit = [each.name for each, image in zip(images.techniques, images.weighted, strict=True) if image.any()]
     assert lit == ["lens"]

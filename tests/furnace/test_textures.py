@@ -78,6 +78,7 @@ def unseen(folder):
         shape("rectangle", "board", **SQUARE),
         shape("sphere", "board", center=[0, 0, 0], radius=1),
         shape("sphere", "plain", center=[0, 0, 0], radius=1),
+        shape("sphere", "mirror", center=[0, 0, 0], radius=1),
     ]
     return [
         {**each, "transform": [{"scale": 0.1}, {"translate": [20, 0, 3 * i]}]}
@@ -95,6 +96,7 @@ def scene_of(
             "picture": picture(folder),
             "board": diffuse({"checkerboard": [0.2, 0.8]}),
             "plain": diffuse(0.5),
+            "mirror": {"type": "mirror"},
             **dict(materials),
         },
         objects={**far, **dict(objects)},

@@ -151,7 +151,7 @@ def still_life(spectrum, hero_count, wavelengths):
 
 def other_modes():
     """All but 4 independent wavelengths; a mode is a kernel, and each number and each way is in one that is fast."""
-    slow = {(1, "shared"), (8, "independent")}
+    slow = {(1, "shared"), (4, "shared"), (8, "independent")}
     return [
         pytest.param(mode, id=str(mode), marks=pytest.mark.slow if mode in slow else ())
         for mode in MODES

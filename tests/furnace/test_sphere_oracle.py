@@ -47,6 +47,7 @@ SLOW = {
     "bpm, SmallVCM's schedule",
     "vcm, power heuristic",
     "vcm, few light paths",
+    "vcm, many light paths",
     "vcm, Epanechnikov",
 }
 

@@ -61,9 +61,17 @@ def brute_force(setup, wavelengths, path):
     return found
 
 
-@pytest.mark.parametrize("power", [None, True], ids=["balance", "power"])
-@pytest.mark.parametrize("name", ["mixed", "coated", "lens"])
-@pytest.mark.parametrize("subset", SUBSETS)
+def cases():
+    """Every subset of techniques in every scene; by the power heuristic, which is one exponent, in one that is fast."""
+    return [
+        pytest.param(subset, name, power, marks=pytest.mark.slow if power and name != "mixed" else ())
+        for subset in SUBSETS
+        for name in ("mixed", "coated", "lens")
+        for power in (None, True)
+    ]
+
+
+@pytest.mark.parametrize(("subset", "name", "power"), cases())
 def test_weights(monkeypatch, name, subset, power):
     recorder = record(monkeypatch, name, SUBSETS[subset]._replace(power=power), 40)
     compared = {"vm": 0}

@@ -69,6 +69,21 @@ def record(patch, name, counts, pairs, lanes=1, hits_everything=None):
     return recorder
 
 
+def by_heuristic(values, with_power):
+    """Parameters `(value, power)`: each value by the balance heuristic; by the power heuristic too, where slow.
+
+    It changes one exponent, whatever the scene and the techniques: a fast test has it for the values `with_power`.
+    """
+    pairs = [(value, power) for value in values for power in (None, True)]
+    return [
+        pytest.param(
+            value, power, id=f"{value}-{'power' if power else 'balance'}",
+            marks=pytest.mark.slow if power and value not in with_power else (),
+        )
+        for value, power in pairs
+    ]  # fmt: skip
+
+
 def brute_force(recorder, path):
     setup = recorder.setup
     return technique_densities(
@@ -100,8 +115,10 @@ def kinds_of(recorder):
     return {found.technique[0] for found in recorder.found}
 
 
-@pytest.mark.parametrize("power", [None, True], ids=["balance", "power"])
-@pytest.mark.parametrize("name", [name for name in oracle_scenes.SCENES if name != "lights on lens"])
+@pytest.mark.parametrize(
+    ("name", "power"),
+    by_heuristic([name for name in oracle_scenes.SCENES if name != "lights on lens"], ("mixed", "lights")),
+)
 def test_all_techniques(monkeypatch, name, power):
     pairs = 150 if name in {"far", "dispersive"} else 50
     lanes = scene_named(name).graph.render.hero_count if name == "dispersive" else 1
@@ -130,8 +147,7 @@ def test_sharp_lobes_are_not_merged_at(monkeypatch, subset):
     assert_exact(recorder, 60)
 
 
-@pytest.mark.parametrize("power", [None, True], ids=["balance", "power"])
-@pytest.mark.parametrize("subset", WITH_LENS)
+@pytest.mark.parametrize(("subset", "power"), by_heuristic(WITH_LENS, ("parts",)))
 def test_lens_hits(monkeypatch, subset, power):
     counts = WITH_LENS[subset]._replace(power=power)
     recorder = record(monkeypatch, "wide lens", counts, 80)
@@ -163,8 +179,7 @@ def test_lens_hits_of_light_tracing(monkeypatch, power):
     assert_exact(recorder, 60)
 
 
-@pytest.mark.parametrize("radius", [1e-7, 1e-3, 0.1, 1e4])
-@pytest.mark.parametrize("power", [None, True], ids=["balance", "power"])
+@pytest.mark.parametrize(("radius", "power"), by_heuristic([1e-7, 1e-3, 0.1, 1e4], (1e-7, 1e4)))
 def test_every_radius(monkeypatch, radius, power):
     counts = Counts(1, 1, 1, 1, N_LIGHT * math.pi * radius**2, power)
     assert_exact(record(monkeypatch, "mixed", counts, 20), 60)

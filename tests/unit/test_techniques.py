@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numba
 import numpy as np
 import pytest
+from kernel_code import code_of
 
 from artist_py.cli.main import main
 from artist_py.core.table import Table
@@ -188,10 +189,7 @@ class TestRenders:
         for wanted in (True, False):
             recorder = TechniqueRecorder(film.techniques, 6, 8) if wanted else None
             with StochasticSampler(compiled, _film(), 1, recorder) as sampler:
-                uncached = numba.jit(**trace_paths.targetoptions)(trace_paths.py_func)
-                arguments = sampler._arguments(0, np.zeros(4, np.int64))
-                uncached.compile(tuple(uncached.typeof_pyval(argument) for argument in arguments))
-                (code[wanted],) = uncached.inspect_llvm().values()
+                code[wanted] = code_of(trace_paths, sampler._arguments(0, np.zeros(4, np.int64)))
         assert "add_to_technique" in code[True]
         assert "add_to_technique" not in code[False]
 

@@ -10,12 +10,12 @@ TESTS = Path(__file__).parents[1]
 SCRIPT = """
 import json, sys
 sys.path.insert(0, {tests!r})
-from rendering import diffuse, render, scene, shape
+from rendering import render, scene, shape
 from artist_py.samplers import render_job
 
 render_job.LARGE_PIXELS = 1
-walls = shape("sphere", "wall", center=[0, 1, 0], radius=2, reverse=True, emission=1)
-compiled = scene([walls], materials={{"wall": diffuse(0.5)}}, film={{"resolution": [4, 4]}})
+sky = shape("sphere", center=[0, 1, 0], radius=2, reverse=True, emission=1)  # no material: a small kernel
+compiled = scene([sky], film={{"resolution": [4, 4]}}, render={{"hero_count": 1}})
 statistics = render(compiled, 1, compile_apart=True).statistics
 print(json.dumps({{name: statistics[name] for name in ("cache_hits", "cache_misses")}}))
 """

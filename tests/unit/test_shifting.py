@@ -19,7 +19,7 @@ from artist_py.transport.shifting import Matching, is_unmatched, of_power, redis
 
 FIRST, BINS = 400, 12
 NEEDS, UP = Needs(), Vec3([0.0, 0.0, 1.0])
-STEPS = 20_000
+STEPS = 5_000
 NUMBERS = (np.arange(STEPS) + 0.5) / STEPS
 
 

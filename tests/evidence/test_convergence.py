@@ -23,9 +23,9 @@ MARKS = [8, 32, 128]
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
-    """Path tracing with other numbers of wavelengths, twice, to 128 iterations."""
+    """Path tracing with and without early roulette, twice, to 128 iterations."""
     scene = write_room(tmp_path_factory.mktemp("run"))
-    entries = parse_entries("pt,pt:hero_count=1")
+    entries = parse_entries("pt,pt:roulette_length=1")
     compiled = compile_entries(scene, entries, (), 1)
     exact = artist_py.render(compiled["pt"], iterations=3000, aovs=("variance",)).film
     reference = Reference(exact.rgb, exact.variance, {"file": "exact"})
@@ -37,9 +37,9 @@ def test_rows(run):
     order = [(row.repeat, row.entry, row.mark) for row in run.rows]
     assert order == [(r, e.label, m) for r in (0, 1) for e in run.entries for m in MARKS]
     assert {row.seed for row in run.rows if row.repeat == 1} == {8}
-    scene = artist_py.load_scene(run.scene, {"render.seed": 8, "render.hero_count": 1})
+    scene = artist_py.load_scene(run.scene, {"render.seed": 8, "render.roulette_length": 1})
     film = artist_py.render(scene, iterations=8, threads=2).film
-    [row] = [row for row in run.rows if (row.repeat, row.entry, row.mark) == (1, "pt:hero_count=1", 8)]
+    [row] = [row for row in run.rows if (row.repeat, row.entry, row.mark) == (1, "pt:roulette_length=1", 8)]
     assert row.relmse == relmse(film.rgb, run.reference.rgb)
     assert row.smape == smape(film.rgb, run.reference.rgb)
     assert row.own_relmse == pytest.approx(row.relmse - run.reference.relmse)
@@ -52,7 +52,7 @@ def test_rows(run):
 
 def test_errors_fall(run):
     """As one over the iterations, about: sixteen times as many, between a fourth and a sixtieth of the error."""
-    for label in ("pt", "pt:hero_count=1"):
+    for label in ("pt", "pt:roulette_length=1"):
         first, *_, last = (row.own_relmse for row in run.rows_of(label) if row.repeat == 0)
         assert 4 < first / last < 60
 
@@ -82,8 +82,8 @@ def test_files(run, tmp_path):
     assert again.rows == run.rows
     assert again.entries == run.entries
     assert again.reference.relmse == run.reference.relmse
-    image = read_image(folder / "images" / "pt_hero_count=1_128.exr")
-    assert np.array_equal(image.rgb, run.images["pt:hero_count=1", 128])
+    image = read_image(folder / "images" / "pt_roulette_length=1_128.exr")
+    assert np.array_equal(image.rgb, run.images["pt:roulette_length=1", 128])
     assert file_name("a:b/c d") == "a_b_c_d"
 
 

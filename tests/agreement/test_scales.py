@@ -32,6 +32,10 @@ def still_life(scale=1.0, offset=(0.0, 0.0, 0.0), seed=1, lens=False):
             edges=[size(0, 0.5, 0), size(0.5, 0, 0)],
             emission=5,
         ),
+        # Dark, in a corner: so that this scene and that of small things share their kernels.
+        shape(
+            "disk", center=place(-0.875, 0.9375, 0.875), normal=[0, -1, 0], radius=0.0625 * scale, emission=0
+        ),
     ]
     objects = {"block": [shape("box", "white", min=size(-0.25, -0.25, 0), max=size(0.25, 0.25, 0.5))]}
     instances = [
@@ -101,9 +105,16 @@ def test_small_things_in_large_scenes(count):
     plate = shape("rectangle", "white", corner=[-0.05, -0.05, 0], edges=[[0.1, 0, 0], [0, 0.1, 0]])
     lamp = shape("disk", center=[0, 0, 0.05], normal=[0, 0, -1], radius=0.05, emission=1)
     wall = shape("sphere", "white", center=[0, 0, 0], radius=0.2 * count, reverse=True)
+    # Below the plate: what the still life has.
+    below = [
+        shape("sphere", "glass", center=[0, 0, -0.1], radius=0.01),
+        shape("rectangle", corner=[0.02, 0, -0.1], edges=[[0.01, 0, 0], [0, 0.01, 0]], emission=0),
+    ]
     compiled = scene(
-        [plate, lamp, wall],
+        [plate, lamp, wall, *below],
         materials=MATERIALS,
+        objects={"block": [shape("box", "white", min=[0, 0.02, -0.1], max=[0.01, 0.03, -0.09])]},
+        instances=[{"object": "block"}],
         camera=look([0.15, 0, 0.02], [0, 0, 0], 0.01),
         render={"max_path_length": 2, "sampler": "sobol"},
     )

@@ -33,18 +33,14 @@ from artist_py.samplers.wavelengths import tolerance_of
 from artist_py.scene.shape_types import Disk
 
 FALSE_ALARM = 1e-4
-SEEDS, ITERATIONS, PRECISION = (
-    24,
-    24,
-    6e-3,
-)  # renders, iterations of each, relative standard error of each estimate
-PRECISE = 24, 240, 1.5e-3  # the same of slow tests
+# Renders, iterations of each, and the largest of the nine relative standard errors; of their mean it is half of that.
+SEEDS, ITERATIONS, PRECISION = 24, 16, 6.5e-3  # measured: 4e-3
+PRECISE = 24, 100, 2.4e-3  # the same of slow tests; measured: 1.5e-3, and 0.6e-3 of the mean
+SHIFTING = 24, 100, 8e-3  # of photon mapping with one wavelength each; measured: 5e-3
+SPECTRAL = 24, 512, 2e-3  # of smooth spectra; measured: 0.9e-3
 NAMES = ["pt", "lt", "bpt", "ppm", "bpm", "vcm, wide"]
-FAST = [
-    "pt",
-    "bpt",
-    "vcm, wide",
-]  # all techniques that there are; test_fluorescent_rooms.py has the same kernels
+# All techniques that there are, and kernels that test_fluorescent_rooms.py has compiled.
+FAST = ["pt", "bpt", "vcm, wide"]
 
 SMOOTH = {"wall": CASCADE, "polar": ORANGE, "side": {"type": "diffuse", "reflectance": 0.6}}
 
@@ -66,7 +62,7 @@ def assert_agree(found, truth, precision, rounding):
     # All nine, and their mean: a bias that all have in common shows there first.
     relative = np.column_stack([relative.reshape(count, -1), relative.mean(axis=(1, 2))])
     error = relative.std(axis=0, ddof=1) / math.sqrt(count)
-    assert error.max() < precision, f"too noisy: {error.max():.2g}"
+    assert error.max() < precision and error[-1] < 0.5 * precision, f"too noisy: {error}"
     allowed = stats.t.isf(0.5 * FALSE_ALARM / error.size, count - 1) * error + rounding
     assert (np.abs(relative.mean(axis=0)) < allowed).all(), (relative.mean(axis=0), error)
 
@@ -155,10 +151,9 @@ def test_every_option(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", ["pt", "lt", "bpt", "ppm", "bpm", "vcm"])
 def test_lamps_on_the_wall(name):
-    merging = {"radius": 0.005, "light_paths": 8, "alpha": 1}
-    assert_is_solved(scene_of(name, disks=True, merging=merging), solution(disks=True), *PRECISE)
+    assert_is_solved(scene_of(name, disks=True), solution(disks=True), *PRECISE)
 
 
 @pytest.mark.slow
@@ -188,7 +183,7 @@ def test_photon_mapping_by_shifting_wavelengths():
     elastic = np.diagonal(closed.scatter, axis1=1, axis2=2)
     blurred = elastic * (incoming @ blur(CHANNELS, tolerance_of(compiled.graph.render.merging, 0)).T)
     truth = np.einsum("poi,pi->po", closed.scatter, incoming) - elastic * incoming + blurred
-    assert_is_solved(compiled, shown(truth), *PRECISE)
+    assert_is_solved(compiled, shown(truth), *SHIFTING)
 
 
 # --- the whole spectrum -------------------------------------------------------------------------------------------
@@ -197,9 +192,12 @@ def test_photon_mapping_by_shifting_wavelengths():
 @pytest.mark.slow
 @pytest.mark.parametrize("name", FAST)
 def test_the_whole_spectrum(name):
-    """Smooth spectra, which sets of wavelengths sample; what more than two fluorescent events bring is below 1e-4."""
+    """Smooth spectra, which sets of wavelengths sample; three sets are exact for what three edges bring."""
     integrator, settings = SUBSETS[name]
-    compiled = sphere_of(SMOOTH, [LAMP], integrator=integrator, wavelength_range=RANGE, **settings)
+    lamps = [LAMP["spectrum"]]
+    compiled = sphere_of(
+        SMOOTH, lamps, integrator=integrator, wavelength_range=RANGE, max_path_length=3, **settings
+    )
     surfaces = on_bins(compiled)
     closed = patches_of(surfaces.scatter, surfaces.emission[0] * BALL**2, disks=False)
-    assert_is_solved(compiled, closed.radiance() @ surfaces.response.T, 24, 512, 5e-3)
+    assert_is_solved(compiled, sum(closed.orders(3)) @ surfaces.response.T, *SPECTRAL)

@@ -15,17 +15,15 @@ from artist_py.scene import tables
 from artist_py.scene.compile_camera import camera_matrices, compile_camera, compile_filter
 from artist_py.scene.compile_emitters import EmitterCompiler
 from artist_py.scene.compile_fluorescence import (
-    SETS,
     FluorescentScene,
     fluorescent_scene,
     fluoresces,
-    loss_with,
-    with_enough_sets,
     with_fluorescent_wavelengths,
 )
 from artist_py.scene.compile_geometry import GeometryCompiler, collect_parts, space_of
 from artist_py.scene.compile_lights import method_warnings
 from artist_py.scene.compile_materials import NEED_NAMES, MaterialCompiler, SpectrumRows
+from artist_py.scene.compile_sets import SETS, loss_with, with_enough_sets
 from artist_py.scene.compile_shifting import shifts, with_shifting
 from artist_py.scene.compile_textures import check_coordinates
 from artist_py.transport.initial_media import media_at

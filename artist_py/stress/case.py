@@ -63,6 +63,7 @@ class Case:
     integrators: tuple = ALL
     left_out: dict = field(default_factory=dict)  # integrator: why it cannot render this
     precision: float = 0.01  # relative standard error of the mean that a cell has to reach
+    noisier: dict = field(default_factory=dict)  # integrator: a larger one, where the case's `why` says why
     rounding: float = 1e-5  # relative deviation that is not a fault
     why: str = ""  # the reason of a bias, of a rounding above the default, or of an expectation that is no closed form
     warning: str = ""  # a part of what the renderer has to warn of
@@ -76,3 +77,7 @@ class Case:
         object.__setattr__(
             self, "integrators", tuple(name for name in self.integrators if name not in self.left_out)
         )
+
+    def precision_of(self, integrator):
+        """Relative standard error of the mean that a cell has to reach."""
+        return self.noisier.get(integrator, self.precision)

@@ -98,8 +98,9 @@ def _judge_means(case, integrator, found, expected, chance, freedom):
     if z > quantile(chance, freedom):
         what = f"{found[0][-1]:.6g} instead of {expected[0][-1]:.6g}; one part is {z:.1f} standard errors off"
         return Verdict("wrong", what, **figures)
-    if found[1][-1] > case.precision * size:
-        what = f"standard error {found[1][-1] / size:.2g}, wanted is {case.precision:.2g} at most"
+    precision = case.precision_of(integrator)
+    if found[1][-1] > precision * size:
+        what = f"standard error {found[1][-1] / size:.2g}, wanted is {precision:.2g} at most"
         return Verdict("too noisy", what, **figures)
     return Verdict("ok", **figures)
 

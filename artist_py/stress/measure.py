@@ -64,7 +64,7 @@ def measure(case, integrator, seed, folder, threads, started=lambda: None):
     pilot = _run(compiled, PILOT, PILOT, threads, result, started, stream=1)
     started()
     affordable = PILOT * TIME_SHARE * case.seconds / max(result.render_seconds, 1e-9)
-    wanted = _iterations(pilot[:, -1], case, affordable)
+    wanted = _iterations(pilot[:, -1], case, case.precision_of(integrator), affordable)
     result.means = _run(compiled, wanted, BATCHES, threads, result, started)
     result.iterations, result.seconds = wanted, time.monotonic() - begun
     return result
@@ -115,13 +115,13 @@ def refused(text, folder, begun, limit):
     return Measurement(message=(done.stdout + done.stderr).strip(), code=done.returncode, seconds=seconds)
 
 
-def _iterations(means, case, affordable):
+def _iterations(means, case, precision, affordable):
     """How many iterations reach the precision, from means of single ones; a multiple of `BATCHES`.
 
     They may be fewer where time is short; then the verdict will be that the cell is too noisy.
     """
     mean, spread = abs(means.mean()), means.std(ddof=1)
-    needed = SAFETY * (spread / (case.precision * mean)) ** 2 if mean > 0.0 else 0.0
+    needed = SAFETY * (spread / (precision * mean)) ** 2 if mean > 0.0 else 0.0
     if not math.isfinite(needed):
         return BATCHES
     most = min(max(case.most, BATCHES), affordable)

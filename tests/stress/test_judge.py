@@ -50,6 +50,12 @@ def test_noise_is_no_success():
     assert verdict(Radiance(1.0), measured(spread=0.2), precision=0.01).status == "too noisy"
 
 
+def test_some_integrators_may_be_noisier():
+    found = measured(spread=0.2)
+    assert verdict(Radiance(1.0), found, noisier={"vcm": 0.1}).is_ok
+    assert verdict(Radiance(1.0), found, noisier={"vcm": 0.1}, integrator="pt").status == "too noisy"
+
+
 def test_a_stated_bias_is_that_of_one_integrator():
     expect = Radiance(1.0, bias={"ppm": 0.03})
     assert verdict(expect, measured(0.02), integrator="ppm").is_ok

@@ -23,6 +23,7 @@ def gallery_case(name, shows, scenes=SCENES, noisier=()):
         noisier=dict(noisier),
         rounding=BLURRED,
         why=f"{MERGING_BLURS} {FEW_PHOTONS}" if noisier else MERGING_BLURS,
+        most=2048,
         least=256,  # all pixels share sets of wavelengths, and 16 of these seldom have the worst among them
     )
 

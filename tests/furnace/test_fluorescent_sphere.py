@@ -36,8 +36,10 @@ FALSE_ALARM = 1e-4
 # Renders, iterations of each, and the largest of the nine relative standard errors; of their mean it is half of that.
 SEEDS, ITERATIONS, PRECISION = 24, 16, 6.5e-3  # measured: 4e-3
 PRECISE = 24, 100, 2.4e-3  # the same of slow tests; measured: 1.5e-3, and 0.6e-3 of the mean
+FEW = 24, 300, 2.4e-3  # with few light paths
+LIMITED = 24, 100, 4e-3  # of few edges
 SHIFTING = 24, 100, 8e-3  # of photon mapping with one wavelength each; measured: 5e-3
-SPECTRAL = 24, 512, 2e-3  # of smooth spectra; measured: 0.9e-3
+SPECTRAL = 24, 512, 3e-3  # of smooth spectra; measured with pt: 0.9e-3
 NAMES = ["pt", "lt", "bpt", "ppm", "bpm", "vcm, wide"]
 # All techniques that there are, and kernels that test_fluorescent_rooms.py has compiled.
 FAST = ["pt", "bpt", "vcm, wide"]
@@ -134,20 +136,23 @@ def test_lamp_in_the_middle(name):
     assert_is_solved(scene_of(name), solution())
 
 
-@pytest.mark.parametrize(
-    ("name", "edges"),
-    [pytest.param(name, 4, marks=() if name in FAST else pytest.mark.slow) for name in NAMES]
-    + [pytest.param(name, edges, marks=pytest.mark.slow) for name in NAMES for edges in (2, 3)],
-)
+@pytest.mark.parametrize("name", FAST)
+def test_up_to_three_events(name):
+    assert_is_solved(scene_of(name, max_path_length=4), solution(4))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("edges", [2, 3, 4])
+@pytest.mark.parametrize("name", NAMES)
 def test_limited_length(name, edges):
     """One fluorescent event, two at different patches, and three."""
-    assert_is_solved(scene_of(name, max_path_length=edges), solution(edges))
+    assert_is_solved(scene_of(name, max_path_length=edges), solution(edges), *LIMITED)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SUBSETS)
 def test_every_option(name):
-    assert_is_solved(scene_of(name), solution(), *PRECISE)
+    assert_is_solved(scene_of(name), solution(), *(FEW if "few" in name else PRECISE))
 
 
 @pytest.mark.slow
@@ -167,10 +172,10 @@ def test_other_numbers_of_sets(sets):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("heroes", [1, 4])
-def test_path_tracing_by_shifting_wavelengths(heroes):
+@pytest.mark.parametrize(("heroes", "precision"), [(1, (24, 600, 3e-3)), (4, PRECISE)])
+def test_path_tracing_by_shifting_wavelengths(heroes, precision):
     compiled = scene_of("pt", wavelengths="independent", hero_count=heroes)
-    assert_is_solved(compiled, solution(), *PRECISE)
+    assert_is_solved(compiled, solution(), *precision)
 
 
 @pytest.mark.slow

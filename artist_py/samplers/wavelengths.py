@@ -1,5 +1,7 @@
 """The wavelengths of an iteration, and the spectra at them."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ..core.table import Table
@@ -7,7 +9,7 @@ from ..core.vector import Spectrum
 from ..scene.tables import ColourControl, Fluorescence, Spectra
 
 CHANNELS = 3  # of the film
-TINY = 1e-30
+TINY = 1e-30  # of a channel that does not see the rendered range at all
 
 
 def van_der_corput(index):
@@ -82,37 +84,52 @@ def fluorescence_at(fluorescent, count, first, wavelengths, weights, in_colour, 
     out = bins.reshape(n_sets, 1, count)
     into = np.roll(bins.reshape(n_sets, count), -1, axis=0)[:, :, None]
     weight = np.roll(weights.reshape(n_sets, count), -1, axis=0)[:, :, None]
-    rates = (
-        fluorescent.matrices[:, out, into] * weight
-    )  # (materials, m, j, k): to wavelength k of set m from j of m + 1
+    # (materials, m, j, k): to wavelength k of set m from j of m + 1
+    rates = fluorescent.matrices[:, out, into] * weight
     towards_eye = rates.transpose(0, 2, 1, 3)
     towards_light = np.roll(rates, 1, axis=1).transpose(0, 3, 1, 2)  # (materials, k, m + 1, j)
     lanes, size = n_sets * count, (len(rates), -1)
-    control, more, matrix = None, 0, np.eye(lanes, count)
-    colour, unit = np.zeros(lanes), np.ones(count)
+    columns = _Columns(np.eye(lanes, count), np.zeros(lanes), np.ones(count), None)
     if in_colour:
         seen = fluorescent.sensor[:, bins[:count]] * weights[:count]
-        control, more = _colour_control(fluorescent, seen, rates, bins, weights), CHANNELS
-        matrix = np.zeros((lanes + CHANNELS, CHANNELS))
-        matrix[:count], matrix[lanes:] = seen.T, np.eye(CHANNELS)
-        brought = np.maximum(np.abs(fluorescent.sensor).sum(axis=1), TINY)
-        colour, unit = np.concatenate([colour, brought]), 1.0 / brought
-    alive = np.repeat([(lanes + more) / lanes, 0.0], [lanes, more])
+        columns = _channels(
+            fluorescent, seen, _colour_control(fluorescent, seen, rates, bins, weights), lanes
+        )
+    more = len(columns.matrix) - lanes
+    is_wavelength = np.repeat([1.0, 0.0], [lanes, more])
     return Fluorescence(
-        _table(towards_eye.reshape(size)),
-        _table(towards_light.reshape(size)),
-        Table(fluorescent.totals[:, bins].max(axis=1)),
-        Spectrum(np.zeros(lanes + more)),
-        Spectrum(np.zeros(lanes)),
-        Spectrum(np.zeros(lanes * matrix.shape[1])),
-        Spectrum(np.zeros(lanes * count)),
-        Spectrum(matrix.ravel()),
-        Spectrum(np.repeat([1.0, 0.0], [lanes, more])),
-        Spectrum(colour),
-        Spectrum(unit),
-        Spectrum(alive) if has_dispersion else None,
-        control,
+        towards_eye=_table(towards_eye.reshape(size)),
+        towards_light=_table(towards_light.reshape(size)),
+        survival=Table(fluorescent.totals[:, bins].max(axis=1)),
+        zero=Spectrum(np.zeros(lanes + more)),
+        sets=Spectrum(np.zeros(lanes)),
+        rows=Spectrum(np.zeros(columns.matrix[:lanes].size)),
+        coefficients=Spectrum(np.zeros(lanes * count)),
+        matrix=Spectrum(columns.matrix.ravel()),
+        white=Spectrum(is_wavelength),
+        colour=Spectrum(columns.colour),
+        unit=Spectrum(columns.unit),
+        ratio=Spectrum(is_wavelength * (lanes + more) / lanes) if has_dispersion else None,
+        control=columns.control,
     )
+
+
+class _Columns(NamedTuple):
+    """What the matrices of eye subpaths have columns for; see `Fluorescence`."""
+
+    matrix: np.ndarray  # (lanes of light, columns)
+    colour: np.ndarray  # (lanes of light,)
+    unit: np.ndarray  # (columns,)
+    control: ColourControl | None
+
+
+def _channels(fluorescent, seen, control, lanes):
+    """`_Columns` for the film's channels, which get `seen` (3, C) of set 0 and all of the control."""
+    count = seen.shape[1]
+    matrix = np.zeros((lanes + CHANNELS, CHANNELS))
+    matrix[:count], matrix[lanes:] = seen.T, np.eye(CHANNELS)
+    brought = np.maximum(np.abs(fluorescent.sensor).sum(axis=1), TINY)
+    return _Columns(matrix, np.concatenate([np.zeros(lanes), brought]), 1.0 / brought, control)
 
 
 def _colour_control(fluorescent, seen, rates, bins, weights):

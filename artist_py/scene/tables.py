@@ -250,22 +250,17 @@ class Fluorescence(NamedTuple):
 
     towards_eye: Table  # float32 (rows, C M C)
     towards_light: Table  # float32 (rows, C M C)
-    survival: (
-        Table  # float64 (rows,): the most that is scattered of light at any of the wavelengths, at most 1
-    )
-    zero: object  # Spectrum of zeros, of as many lanes as light has: M C, and 3 for the control
+    survival: Table  # float64 (rows,): the most that is scattered at any of the wavelengths, at most 1
+    # Spectra. Light has M C lanes, and 3 more with a control; eye subpaths have a matrix from these to columns.
+    zero: object  # of as many zeros as light has lanes
     sets: object  # of M C zeros
-    rows: object  # of as many zeros as an eye subpath's matrix has for these
+    rows: object  # of as many zeros as the matrix has for these
     coefficients: object  # of C M C zeros
-    matrix: (
-        object  # Spectrum with which eye subpaths start: what the film sees of all lanes of light, per column
-    )
-    white: object  # Spectrum of light of radiance 1 at all wavelengths,
+    matrix: object  # with which eye subpaths start: what the film sees of all lanes of light, per column
+    white: object  # of light of radiance 1 at all wavelengths,
     colour: object  # and of one that is the same to the film by its control alone
     unit: object  # per column: 1 over what a path of throughput 1 brings it of that, for Russian roulette
-    ratio: (
-        object | None
-    )  # Spectrum: r of theory (2.6) where all wavelengths mix; absent where no density depends on it
+    ratio: object | None  # r of theory (2.6) where all wavelengths mix; absent where no density depends on it
     control: ColourControl | None  # absent where columns are wavelengths
 
 

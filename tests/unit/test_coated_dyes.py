@@ -106,7 +106,21 @@ def coated(reflectance_row=0, ior=1.5, two_sided=1, glow=0.3):
 def dyes():
     """`Fluorescence` of two sets of one wavelength: 0.5 of the second is given off at the first."""
     coefficients = Table(np.array([[0.5, 0.0]], np.float32)), Table(np.array([[0.0, 0.5]], np.float32))
-    return Fluorescence(*coefficients, Table(np.ones(1)), Spectrum([0.0, 0.0]), Spectrum([1.0, 0.0]))
+    zero, one = Spectrum([0.0, 0.0]), Spectrum([1.0])
+    return Fluorescence(
+        *coefficients,
+        survival=Table(np.ones(1)),
+        zero=zero,
+        sets=zero,
+        rows=zero,
+        coefficients=zero,
+        matrix=Spectrum([1.0, 0.0]),
+        white=Spectrum([1.0, 1.0]),
+        colour=zero,
+        unit=one,
+        ratio=None,
+        control=None,
+    )
 
 
 def towards(degrees, azimuth=0.0):

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from artist_py.film.accumulation import Film
+from artist_py.samplers.memory import carries_colour
 from artist_py.samplers.render_job import RenderSettings, Silence, sampler_for
 from artist_py.scene.compile import compile_scene
 from artist_py.scene.reader import read_scene_text
@@ -140,6 +141,8 @@ def _run(compiled, iterations, batches, threads, result, started, stream=0):
     film = Film(y1 - y0, x1 - x0)
     white = float(TO_XYZ[1] @ compiled.spectra[:3].sum(axis=1, dtype=float))
     means, before = [], np.zeros(film.sums.shape)
+    # A control variate may take more from single iterations than there is.
+    is_light = not carries_colour(compiled, by_wavelength=False)
     with sampler_for(
         compiled, film, RenderSettings(iterations=iterations, threads=threads), Silence()
     ) as sampler:
@@ -149,7 +152,7 @@ def _run(compiled, iterations, batches, threads, result, started, stream=0):
         begun = time.monotonic()
         for i in range(iterations):
             sampler.iterate(i)
-            result.negative += count_negative(sampler.image)
+            result.negative += count_negative(sampler.image) if is_light else 0
             if (i + 1) % (iterations // batches) == 0:
                 luminance = (film.sums - before) @ TO_XYZ[1] / (white * (iterations // batches))
                 means.append(region_means(luminance))
